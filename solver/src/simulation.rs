@@ -201,13 +201,13 @@ impl Simulation {
 
     /// Phase-field counters; all zero where none is modelled.
     pub fn phase_field_counts(&self) -> PhaseFieldCounts {
-        self.frame.phase_field_counts().unwrap_or_default()
+        either!(&self.frame, body => body.phase_field_counts()).unwrap_or_default()
     }
 
     /// What is modelled and how large it is.
     pub fn extent(&self) -> Extent {
         let mut models = vec!["momentum".to_string()];
-        if self.frame.phase_field_counts().is_some() {
+        if either!(&self.frame, body => body.phase_field_counts()).is_some() {
             models.push("phase field".to_string());
         }
         if either!(&self.frame, body => body.has_contact()) {
@@ -225,13 +225,13 @@ impl Simulation {
 
     /// Calls `f` with the state of every material point now, body by body.
     pub fn for_each_point(&self, f: &mut dyn FnMut(PointState)) {
-        self.frame.for_each_point(f);
+        either!(&self.frame, body => body.for_each_point_state(f));
     }
 
     /// The spans of the mesh with material points, and position, velocity and phase field at their corners
     /// now.
     pub fn span_grid(&self) -> SpanGrid {
-        self.frame.span_grid()
+        either!(&self.frame, body => body.span_grid())
     }
 
     /// Fields on a raster of `pixels` over the patch.

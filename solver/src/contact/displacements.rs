@@ -1,6 +1,6 @@
 //! Displacements of vertices in a step.
 
-use crate::linear_algebra::extremes::{larger, smaller};
+use crate::linear_algebra::extremes::around;
 
 /// Least and largest displacement of vertices in each direction, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -9,9 +9,7 @@ pub struct Range([[f64; 2]; 2]);
 impl Range {
     /// Of some displacements, m.
     pub fn of(displacements: impl Iterator<Item = [f64; 2]>) -> Self {
-        Self(displacements.fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], displacement| {
-            [[0, 1].map(|d| smaller(low[d], displacement[d])), [0, 1].map(|d| larger(high[d], displacement[d]))]
-        }))
+        Self(around(displacements.map(|displacement| [displacement; 2])))
     }
 
     /// Bound of the relative displacement of two vertices, m; zero if there are none.

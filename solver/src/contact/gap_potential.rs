@@ -39,10 +39,10 @@ use super::ContactLedger;
 use super::impulse::ContactForce;
 use super::rigid::RigidPose;
 use crate::checkpoint::{Archive, StateError};
-use crate::linear_algebra::extremes::{larger, smaller};
+use crate::linear_algebra::extremes::{around, larger, smaller};
 use crate::linear_algebra::vectors::dot;
 use crate::splines::quadrature::Rule;
-use arc::{BoundaryPlace, Closest, Outline, around, nearest, rules};
+use arc::{BoundaryPlace, Closest, Outline, nearest, rules};
 use friction::{ContactPoint, Friction};
 use own_pairs::OwnPairs;
 use rigid_outline::RigidOutline;
@@ -301,9 +301,7 @@ impl GapPotential {
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
         let Self { reach: _, rules: _, rigid: _, thin: _, own: _, friction, forces: _, energy: _, power: _, work } =
             self;
-        if let Some(friction) = friction {
-            friction.exchange(archive)?;
-        }
+        friction.iter_mut().try_for_each(|friction| friction.exchange(archive))?;
         if !self.rigid.is_empty() {
             archive.value(work)?;
         }

@@ -3,7 +3,7 @@
 use super::displacements::Range;
 use super::outline::{bounds, perimeter, rings, spacing, without_patch};
 use crate::checkpoint::{Archive, StateError};
-use crate::linear_algebra::extremes::{larger, smaller};
+use crate::linear_algebra::extremes::around;
 use crate::linear_algebra::vectors::{dot, unit};
 use crate::scene::{Body, Mesh};
 
@@ -162,9 +162,7 @@ impl Surface {
 
     /// Box around the boundary: lower left and upper right corner, m.
     pub fn bounding_box(&self) -> [[f64; 2]; 2] {
-        self.vertices.iter().fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], vertex| {
-            [[0, 1].map(|d| smaller(low[d], vertex[d])), [0, 1].map(|d| larger(high[d], vertex[d]))]
-        })
+        around(self.vertices.iter().map(|vertex| [*vertex; 2]))
     }
 
     /// Numbers of the segments that may lie in a box.

@@ -89,24 +89,6 @@ impl From<SolveFailure> for Failure {
     }
 }
 
-impl From<Unconverged> for Failure {
-    fn from(failure: Unconverged) -> Self {
-        Self::Unconverged(failure)
-    }
-}
-
-impl From<TooDeep> for Failure {
-    fn from(failure: TooDeep) -> Self {
-        Self::TooDeep(failure)
-    }
-}
-
-impl From<TooFast> for Failure {
-    fn from(failure: TooFast) -> Self {
-        Self::TooFast(failure)
-    }
-}
-
 impl From<OutsidePatch> for Failure {
     fn from(OutsidePatch(position): OutsidePatch) -> Self {
         Self::Left(position)

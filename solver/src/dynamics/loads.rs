@@ -53,8 +53,7 @@ impl Sum {
 
 /// Points on a side of the patch, with the layout of the body in every span.
 pub fn boundary_points(patch: &Patch, body: &Body, side: Side) -> Vec<BoundaryPoint> {
-    let along = if matches!(side, Side::Left | Side::Right) { 1 } else { 0 };
-    patch.boundary(side, &Rule::new(body.layout, body.particles_per_cell[along]))
+    patch.boundary(side, &Rule::new(body.layout, body.particles_per_cell[side.along()]))
 }
 
 /// A traction of which a part would not act on the body.
@@ -294,18 +293,7 @@ pub(super) fn take_side(lattice: &Lattice, functions: &mut PointFunctions, place
     functions.values.iter_mut().for_each(|(at, _)| *at = lattice.control_point(*at, first, place));
 }
 
-/// Control points of the material at a surface point, and values of their functions there; `None` if there
-/// is no material within a span of it.
-pub(crate) fn functions_of_material(
-    patch: &Patch,
-    lattice: &Lattice,
-    point: &SurfacePoint,
-    moves: impl Fn(usize) -> bool,
-) -> Option<Vec<(usize, f64)>> {
-    Some(material_at(patch, lattice, point, moves)?.values)
-}
-
-/// The same with the gradients of the functions.
+/// Functions of the material at a surface point; `None` if there is no material within a span of it.
 pub(crate) fn material_at(
     patch: &Patch,
     lattice: &Lattice,

@@ -185,9 +185,7 @@ impl TotalFrame {
                 },
             );
         }
-        if let Some(sheets) = self.lattice.sheets() {
-            sheets.spread(&mut self.displacement);
-        }
+        self.lattice.spread(&mut self.displacement);
         self.time += dt;
     }
 
@@ -204,9 +202,7 @@ impl TotalFrame {
                 }
             });
         }
-        if let Some(sheets) = self.lattice.sheets() {
-            sheets.spread(&mut self.velocity);
-        }
+        self.lattice.spread(&mut self.velocity);
     }
 
     /// Loads that follow the body or vary in space, at the present time.
@@ -236,9 +232,7 @@ impl TotalFrame {
         } else {
             self.elastic_energy = elastic_forces(lattice, *moduli, *kinematics, displacement, strip_forces, internal);
         }
-        if let Some(sheets) = lattice.sheets() {
-            internal.iter_mut().for_each(|component| sheets.fold(component));
-        }
+        lattice.fold(internal);
     }
 
     /// `a = M⁻¹ (f_ext − f_int)`, or what is prescribed.

@@ -26,6 +26,13 @@ pub fn smallest(lengths: impl IntoIterator<Item = f64>) -> f64 {
     lengths.into_iter().fold(f64::INFINITY, smaller)
 }
 
+/// The box around some boxes, each by its least and its largest coordinates.
+pub(crate) fn around(boxes: impl IntoIterator<Item = [[f64; 2]; 2]>) -> [[f64; 2]; 2] {
+    boxes.into_iter().fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], [other_low, other_high]| {
+        [[0, 1].map(|d| smaller(low[d], other_low[d])), [0, 1].map(|d| larger(high[d], other_high[d]))]
+    })
+}
+
 /// Largest less smallest; not a number if one of them is not.
 pub fn spread(values: &[f64]) -> f64 {
     let values = || values.iter().copied();

@@ -146,6 +146,20 @@ impl Lattice {
         self.sheets.as_deref()
     }
 
+    /// Gives copies of control points the values of their originals.
+    pub(crate) fn spread(&self, field: &mut VectorField) {
+        if let Some(sheets) = &self.sheets {
+            sheets.spread(field);
+        }
+    }
+
+    /// Moves forces at copies of control points to their originals.
+    pub(crate) fn fold(&self, forces: &mut VectorField) {
+        if let Some(sheets) = &self.sheets {
+            forces.iter_mut().for_each(|component| sheets.fold(component));
+        }
+    }
+
     /// Whether a strip has points in a tile.
     #[inline(always)]
     pub(crate) fn is_occupied(&self, strip: usize, tile: usize) -> bool {

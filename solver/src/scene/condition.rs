@@ -26,6 +26,11 @@ impl Side {
             Side::Top => (1, true),
         }
     }
+
+    /// Direction along it.
+    pub(crate) fn along(self) -> usize {
+        1 - self.axis().0
+    }
 }
 
 /// Where a traction or a condition acts.

@@ -1,7 +1,7 @@
 //! Regions of the plane: which positions lie in a shape, and how far it reaches.
 
 use super::condition::Side;
-use crate::linear_algebra::extremes::{larger, smaller};
+use crate::linear_algebra::extremes::{around, larger, smaller};
 
 /// Region of the plane, in m.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,17 +92,9 @@ impl Shape {
             Self::Disk { center, radius } | Self::Annulus { center, outer_radius: radius, .. } => {
                 (center.map(|c| c - radius), center.map(|c| c + radius))
             }
-            Self::Polygon { points } => {
-                points.iter().fold(([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]), |(low, high), p| {
-                    ([0, 1].map(|d| smaller(low[d], p[d])), [0, 1].map(|d| larger(high[d], p[d])))
-                })
-            }
+            Self::Polygon { points } => around(points.iter().map(|point| [*point; 2])).into(),
             Self::Patch => ([f64::NEG_INFINITY; 2], [f64::INFINITY; 2]),
-            Self::Union(shapes) => {
-                shapes.iter().map(Self::bounding_box).fold(([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]), |all, one| {
-                    ([0, 1].map(|d| smaller(all.0[d], one.0[d])), [0, 1].map(|d| larger(all.1[d], one.1[d])))
-                })
-            }
+            Self::Union(shapes) => around(shapes.iter().map(|shape| shape.bounding_box().into())).into(),
             Self::Difference { of, minus } => minus.iter().fold(of.bounding_box(), cut),
         }
     }
@@ -119,12 +111,9 @@ impl Shape {
     /// End points of a side of a rectangle, m; `None` for other shapes.
     pub fn side(&self, side: Side) -> Option<[[f64; 2]; 2]> {
         let Self::Rectangle { min, max } = self else { return None };
-        Some(match side {
-            Side::Left => [*min, [min[0], max[1]]],
-            Side::Right => [[max[0], min[1]], *max],
-            Side::Bottom => [*min, [max[0], min[1]]],
-            Side::Top => [[min[0], max[1]], *max],
-        })
+        let (across, upper) = side.axis();
+        let at = if upper { max[across] } else { min[across] };
+        Some([min, max].map(|corner| [0, 1].map(|d| if d == across { at } else { corner[d] })))
     }
 }
 

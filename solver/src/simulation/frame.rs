@@ -1,12 +1,8 @@
 //! The bodies in the frame of their scene.
 
-use crate::checkpoint::{Archive, StateError};
 use crate::dynamics::failure::Failure;
 use crate::dynamics::total_frame::bodies::TotalBodies;
 use crate::dynamics::updated_frame::UpdatedFrame;
-use crate::output::inspection::PointState;
-use crate::output::span_grid::SpanGrid;
-use crate::phase_field::PhaseFieldCounts;
 use crate::scene::{self, Scene};
 
 /// The bodies in the frame of their scene.
@@ -68,23 +64,5 @@ impl Bodies {
             Self::Total(bodies) => bodies.bodies().iter().map(|body| massive(body.mass().row_sums())).sum(),
             Self::Updated(frame) => frame.fields().iter().map(|field| massive(&field.nodes().mass)).sum(),
         }
-    }
-
-    pub(super) fn phase_field_counts(&self) -> Option<PhaseFieldCounts> {
-        either!(self, body => body.phase_field_counts())
-    }
-
-    /// Calls `f` with the state of every point.
-    pub(super) fn for_each_point(&self, f: &mut dyn FnMut(PointState)) {
-        either!(self, body => body.for_each_point_state(f));
-    }
-
-    /// The spans with material and the fields at their corners.
-    pub(super) fn span_grid(&self) -> SpanGrid {
-        either!(self, body => body.span_grid())
-    }
-
-    pub(super) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        either!(self, body => body.exchange(archive))
     }
 }

@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use super::Simulation;
+use super::frame::{Bodies, either};
 use crate::checkpoint::{Archive, StateError};
 use crate::scene::Scene;
 use crate::simulation::breakdown::Breakdown;
@@ -64,7 +65,7 @@ impl Simulation {
         } = self;
         archive.value(steps)?;
         archive.value(parts)?;
-        frame.exchange(archive)?;
+        either!(frame, body => body.exchange(archive))?;
         archive.value(warnings)?;
         [initial, energy_in].into_iter().try_for_each(|energy| archive.value(energy))?;
         archive.value(warned)

@@ -48,7 +48,7 @@ impl Simulation {
     /// State of the worst points and extremes now: for looking at a run that broke down.
     pub fn inspect(&self) -> Inspection {
         let fastest = either!(&self.frame, body => body.fastest_control_point());
-        Inspection::new(fastest, |f| self.frame.for_each_point(f))
+        Inspection::new(fastest, |f| self.for_each_point(f))
     }
 
     /// The step just taken was `result`; in the updated frame the critical step is taken again where points
@@ -231,7 +231,7 @@ impl Simulation {
             return Err(self.at_worst_point(&format!("{name} of the history is not a finite number"), None));
         }
         if let Some(frame) = self.updated_frame() {
-            frame.contact_converges(self.part_of_step()).map_err(|failure| self.broken(failure.into()))?;
+            frame.contact_converges(self.part_of_step()).map_err(|found| self.broken(Failure::Unconverged(found)))?;
         }
         let Sample { closure, time, .. } = *sample;
         let limit =

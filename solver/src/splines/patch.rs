@@ -6,10 +6,10 @@
 use std::ops::Range;
 
 use crate::linear_algebra::control_grid::ControlGrid;
-use crate::linear_algebra::extremes::{larger, smaller};
+use crate::linear_algebra::extremes::{around, smaller};
 use crate::scene::{Geometry, Mesh, Side};
 use crate::splines::nurbs::locate::Location;
-use crate::splines::nurbs::{NurbsError, NurbsPatch, RationalFunctions};
+use crate::splines::nurbs::{NurbsError, NurbsPatch, RationalFunctions, products};
 use crate::splines::point_value::PointValue;
 use crate::splines::quadrature::Rule;
 use crate::splines::spline::SplineSpace;
@@ -66,13 +66,8 @@ impl Patch {
 
     /// Lower left and upper right corner of the box around the control points, m.
     pub fn bounding_box(&self) -> ([f64; 2], [f64; 2]) {
-        let positions = self.control_positions();
-        let ends = |d: usize| {
-            let values = self.control_grid().indices().map(|at| positions[d][at]).collect::<Vec<_>>();
-            values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| (smaller(l, x), larger(h, x)))
-        };
-        let [x, y] = [0, 1].map(ends);
-        ([x.0, y.0], [x.1, y.1])
+        let [x, y] = self.control_positions();
+        around(self.control_grid().indices().map(|at| [[x[at], y[at]]; 2])).into()
     }
 
     /// Length of the shortest span in the parameters, m where the patch has no geometry.
@@ -133,11 +128,6 @@ impl Patch {
         }
         points
     }
-
-    /// Products of the B-splines of both directions.
-    fn products(&self, span: [usize; 2], parameters: [f64; 2]) -> RationalFunctions {
-        crate::splines::nurbs::products(&self.spaces, span, parameters)
-    }
 }
 
 /// Values of shape functions with their control points as indices of fields.
@@ -148,12 +138,10 @@ fn on_grid(grid: ControlGrid, functions: &RationalFunctions) -> Vec<(usize, f64)
 
 /// Indices of the control points on a side, in increasing order.
 pub fn control_points_on(side: Side, grid: ControlGrid) -> Vec<usize> {
-    match side {
-        Side::Left => (0..grid.rows).map(|row| grid.index(0, row)).collect(),
-        Side::Right => (0..grid.rows).map(|row| grid.index(grid.columns - 1, row)).collect(),
-        Side::Bottom => (0..grid.columns).map(|column| grid.index(column, 0)).collect(),
-        Side::Top => (0..grid.columns).map(|column| grid.index(column, grid.rows - 1)).collect(),
-    }
+    let ((across, upper), counts) = (side.axis(), [grid.columns, grid.rows]);
+    let end = if upper { counts[across] - 1 } else { 0 };
+    let at = |along: usize| if across == 0 { grid.index(end, along) } else { grid.index(along, end) };
+    (0..counts[side.along()]).map(at).collect()
 }
 
 impl Mesh {
@@ -230,7 +218,7 @@ impl Patch {
     pub(crate) fn functions(&self, Location { span, parameters }: Location) -> PointFunctions {
         let (functions, position, gradient) = match &self.geometry {
             None => {
-                let functions = self.products(span, parameters);
+                let functions = products(&self.spaces, span, parameters);
                 (functions, parameters, functions.gradient)
             }
             Some(patch) => {

@@ -33,9 +33,7 @@ impl Rule {
         };
         fault!("volumes-off-by-a-layer", rule => Rule { weights: [&rule.weights[1..], &rule.weights[..1]].concat(), ..rule })
     }
-}
 
-impl Rule {
     /// Positions and weights between two ends.
     pub(crate) fn between(&self, left: f64, right: f64) -> impl Iterator<Item = (f64, f64)> + '_ {
         let length = right - left;

@@ -70,19 +70,13 @@ fn without_jump(key: &str, prescribed: &Prescribed, fix: [bool; 2], equilibrium:
     }
 }
 
-/// What bodies that meet themselves and the consistent mass do not have.
+/// What the consistent mass does not have.
 fn supported(key: &str, boundary: &Boundary, scene: &Scene, findings: &mut Findings) {
-    let varying = [
-        ("displacement", boundary.prescribed.is_displacement()),
-        ("time", !boundary.prescribed.time.is_constant()),
-        ("from", boundary.part.is_some()),
-        ("name", boundary.name.is_some()),
-    ];
-    for (word, _) in varying.into_iter().filter(|(_, given)| *given) {
-        if scene.analysis.mass == Mass::Consistent && ["displacement", "time"].contains(&word) {
-            let message = "a boundary whose velocity changes, with the consistent mass, is not implemented";
-            findings.error(format!("{key}.{word}"), message, "use mass = \"lumped\"");
-        }
+    let prescribed = &boundary.prescribed;
+    let varying = [("displacement", prescribed.is_displacement()), ("time", !prescribed.time.is_constant())];
+    for (word, _) in varying.into_iter().filter(|(_, given)| *given && scene.analysis.mass == Mass::Consistent) {
+        let message = "a boundary whose velocity changes, with the consistent mass, is not implemented";
+        findings.error(format!("{key}.{word}"), message, "use mass = \"lumped\"");
     }
 }
 
@@ -94,7 +88,7 @@ fn part(key: &str, boundary: &Boundary, mesh: &Mesh, findings: &mut Findings) ->
         findings.error(format!("{key}.from"), message, "remove from and to");
         return false;
     }
-    let d = along(boundary.side);
+    let d = boundary.side.along();
     let (origin, end) = (mesh.origin()[d], mesh.end()[d]);
     let tolerance = TOLERANCE * (end - origin);
     let (side, name) = (side_name(boundary.side), ["x", "y"][d]);
@@ -110,11 +104,6 @@ fn part(key: &str, boundary: &Boundary, mesh: &Mesh, findings: &mut Findings) ->
         return false;
     }
     true
-}
-
-/// Direction along a side.
-fn along(side: Side) -> usize {
-    usize::from(matches!(side, Side::Left | Side::Right))
 }
 
 /// Two conditions that prescribe the same component on the same part of a side.
@@ -136,7 +125,8 @@ fn same_part(key: &str, j: usize, [boundary, other]: [&Boundary; 2], findings: &
 /// Sides that meet in a corner and prescribe a component of its motion differently.
 fn corner(i: usize, j: usize, scene: &Scene, findings: &mut Findings) {
     let pair = [i, j].map(|n| &scene.boundaries[n]);
-    if along(pair[0].side) == along(pair[1].side) || !(0..2).all(|n| reaches(pair[n], pair[1 - n].side, &scene.mesh)) {
+    let along = pair.map(|boundary| boundary.side.along());
+    if along[0] == along[1] || !(0..2).all(|n| reaches(pair[n], pair[1 - n].side, &scene.mesh)) {
         return;
     }
     let differ =
@@ -158,10 +148,10 @@ fn corner(i: usize, j: usize, scene: &Scene, findings: &mut Findings) {
 
 /// Whether a condition reaches the corner at which its side meets another.
 fn reaches(boundary: &Boundary, other: Side, mesh: &Mesh) -> bool {
-    let d = along(boundary.side);
+    let d = boundary.side.along();
     let (origin, end) = (mesh.origin()[d], mesh.end()[d]);
     let tolerance = TOLERANCE * (end - origin);
-    let upper = matches!(other, Side::Right | Side::Top);
+    let (_, upper) = other.axis();
     boundary.part.is_none_or(|[from, to]| if upper { to >= end - tolerance } else { from <= origin + tolerance })
 }
 

@@ -6,7 +6,7 @@ use super::look::Look;
 use super::tractions;
 use crate::dynamics::surface::curve_of;
 use crate::scene::edges::BoundaryEdge;
-use crate::scene::{Body, Boundary, EdgeCondition, Hold, Mass, Mesh, Prescribed, Scene, Shape, Side};
+use crate::scene::{Body, Boundary, EdgeCondition, Hold, Mass, Mesh, Prescribed, Scene, Shape};
 
 /// Distance within which two places are one, of the size of an edge.
 const NEAR: f64 = 1e-9;
@@ -63,7 +63,7 @@ impl<'a> Held<'a> {
         let (min, max) = (mesh.origin(), mesh.end());
         let [mut a, mut b] = Shape::Rectangle { min, max }.side(boundary.side).unwrap_or_default();
         if let Some([from, to]) = boundary.part {
-            let along = usize::from(matches!(boundary.side, Side::Left | Side::Right));
+            let along = boundary.side.along();
             (a[along], b[along]) = (from, to);
         }
         Self {

@@ -3,7 +3,7 @@
 
 use super::findings::Findings;
 use super::ground::Ground;
-use crate::linear_algebra::extremes::{larger, smaller};
+use crate::linear_algebra::extremes::{around, larger};
 use crate::material::mesh_toughness::rule;
 use crate::particles::spans::{finest_cell, longest_span};
 use crate::phase_field::fracture::half_width;
@@ -55,10 +55,8 @@ pub(super) fn check(body: &Body, fracture: &Fracture, ground: &Ground<'_>, findi
 fn span_of_cracks(body: &Body, l0: f64, mesh: &Mesh) -> f64 {
     let spans = body.cracks.iter().map(|crack| {
         let width = half_width(crack, l0).unwrap_or(0.0);
-        let ends = |d: usize| crack.points.iter().map(move |point| point[d]);
-        let min = [0, 1].map(|d| ends(d).fold(f64::INFINITY, smaller) - width);
-        let max = [0, 1].map(|d| ends(d).fold(f64::NEG_INFINITY, larger) + width);
-        longest_span(mesh, &Shape::Rectangle { min, max })
+        let [low, high] = around(crack.points.iter().map(|point| [*point; 2]));
+        longest_span(mesh, &Shape::Rectangle { min: low.map(|x| x - width), max: high.map(|x| x + width) })
     });
     spans.reduce(larger).unwrap_or_else(|| finest_cell(mesh, &body.shape))
 }

@@ -97,11 +97,6 @@ fn sides([x, y]: [f64; 2], [from, to]: [[f64; 2]; 2], body: &Body) -> [bool; 2] 
     [1.0, -1.0].map(|side| body.shape.contains([x - side * beside[1], y + side * beside[0]]))
 }
 
-/// Whether there is material on both sides.
-fn is_between(at: [f64; 2], ends: [[f64; 2]; 2], body: &Body) -> bool {
-    sides(at, ends, body) == [true, true]
-}
-
 /// Whether there is none: in the mouth of a notch that begins on the segment.
 fn is_bare(at: [f64; 2], ends: [[f64; 2]; 2], body: &Body) -> bool {
     body.shape != Shape::Patch && sides(at, ends, body) == [false, false]
@@ -112,7 +107,7 @@ fn is_bare(at: [f64; 2], ends: [[f64; 2]; 2], body: &Body) -> bool {
 fn has_no_side(at: [f64; 2], [from, to]: [[f64; 2]; 2], body: &Body, needs_side: bool) -> bool {
     let near = BESIDE * (to[0] - from[0]).hypot(to[1] - from[1]);
     let on_slit = || body.cracks.iter().any(|crack| crack.is_slit() && crack.distance(at) < near);
-    is_between(at, [from, to], body) && (needs_side || on_slit())
+    sides(at, [from, to], body) == [true, true] && (needs_side || on_slit())
 }
 
 /// An arc lies on the boundary of its body.

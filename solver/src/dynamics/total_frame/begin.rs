@@ -185,9 +185,7 @@ impl TotalFrame {
         self.constraints.start(&mut self.displacement, &mut self.velocity);
         let Some(edges) = &self.edges else { return };
         edges.start(&mut self.displacement, &mut self.velocity);
-        if let Some(sheets) = self.lattice.sheets() {
-            sheets.spread(&mut self.displacement);
-            sheets.spread(&mut self.velocity);
-        }
+        self.lattice.spread(&mut self.displacement);
+        self.lattice.spread(&mut self.velocity);
     }
 }

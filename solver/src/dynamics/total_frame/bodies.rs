@@ -10,7 +10,7 @@ use crate::checkpoint::{Archive, StateError};
 use crate::contact::ContactLedger;
 use crate::contact::gap_potential::rigid_outline::RigidOutline;
 use crate::contact::gap_potential::thin_parts::ThinParts;
-use crate::contact::gap_potential::{GapForce, GapPotential, TooDeep};
+use crate::contact::gap_potential::{GapForce, GapPotential};
 use crate::contact::impulse::ContactForce;
 use crate::contact::rigid::RigidMotion;
 use crate::dynamics::body_sample::{BodySample, BodySamples, PairForce, names, pairs};
@@ -22,7 +22,7 @@ use crate::output::inspection::{InvertedPoint, PointState};
 use crate::output::raster::Raster;
 use crate::output::span_grid::SpanGrid;
 use crate::phase_field::PhaseFieldCounts;
-use crate::scene::{Body, Crack, Scene, Side};
+use crate::scene::{Body, Crack, Scene};
 use crate::splines::patch::Patch;
 use crate::splines::spline::ROUND_OFF;
 
@@ -103,10 +103,10 @@ impl TotalBodies {
     }
 
     /// Forces of contact at the present positions, `dt` seconds after they were found last.
-    fn meet(&mut self, dt: f64) -> Result<(), TooDeep> {
+    fn meet(&mut self, dt: f64) -> Result<(), Failure> {
         let Self { bodies, contact: Some(contact), .. } = self else { return Ok(()) };
         let outlines = bodies.iter().filter_map(TotalFrame::outline).collect();
-        contact.find(outlines, bodies[0].time(), dt)?;
+        contact.find(outlines, bodies[0].time(), dt).map_err(Failure::TooDeep)?;
         for pair in contact.forces() {
             for (side, body) in pair.bodies.into_iter().enumerate() {
                 if let Some(body) = bodies.get_mut(body) {
@@ -299,9 +299,7 @@ impl TotalBodies {
     /// # Errors
     /// Bytes of another scene, and loads that only the program knows.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        if let Some(levels) = &mut self.levels {
-            levels.exchange(archive, &mut self.bodies)?;
-        }
+        self.levels.iter_mut().try_for_each(|levels| levels.exchange(archive, &mut self.bodies))?;
         self.bodies.iter_mut().try_for_each(|body| body.exchange(archive))?;
         if let Some(contact) = &mut self.contact {
             contact.exchange(archive)?;
@@ -322,7 +320,7 @@ fn of_body(scene: &Scene, body: &Body, is_first: bool) -> Result<TotalFrame, Fai
     let mesh = scene.mesh.around(&body.shape);
     let (low, high) = body.shape.bounding_box();
     let boundaries = scene.boundaries.iter().filter(|boundary| {
-        let along = usize::from(matches!(boundary.side, Side::Left | Side::Right));
+        let along = boundary.side.along();
         let meets = boundary.part.is_none_or(|[from, to]| from < high[along] && low[along] < to);
         meets && scene.mesh.is_reached(boundary.side, &body.shape)
     });
@@ -352,6 +350,6 @@ fn sample_body(body: &TotalFrame, sample: &Sample, name: &str) -> BodySample {
     let arm = |at: usize| [0, 1].map(|d| position(d, at) - center[d]);
     let moment = sum(&|at| arm(at)[0] * (velocity[1][at] - mean[1]) - arm(at)[1] * (velocity[0][at] - mean[0]));
     let inertia = sum(&|at| arm(at).iter().map(|x| x * x).sum());
-    let mass = mass * body.thickness();
+    let mass = mass * body.thickness;
     BodySample { name: name.to_string(), mass, center, velocity: mean, spin: moment / inertia, kinetic: sample.kinetic }
 }

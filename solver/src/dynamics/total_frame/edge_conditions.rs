@@ -9,7 +9,7 @@ use crate::dynamics::constraints::Constraints;
 use crate::dynamics::edge_moments::{Moment, Multipliers, moments_of, multiplier_space};
 use crate::dynamics::energy::ConditionSample;
 use crate::dynamics::failure::Failure;
-use crate::dynamics::loads::functions_of_material;
+use crate::dynamics::loads::material_at;
 use crate::dynamics::mass::MassMatrix;
 use crate::dynamics::reaction::Reaction;
 use crate::dynamics::surface::{SurfacePoint, smooth_parts};
@@ -49,16 +49,14 @@ impl EdgeConditions {
         let mut moments = Vec::new();
         for (number, condition) in conditions.iter().enumerate() {
             let parts = smooth_parts(patch, body, &condition.edge);
+            let lost = |place| Failure::LostCondition { body: 0, condition: number, place };
             let of_material = |point: &SurfacePoint| {
-                Some((*point, functions_of_material(patch, lattice, point, |at| mass.moves(at))?))
+                let functions = material_at(patch, lattice, point, |at| mass.moves(at));
+                functions.map(|functions| (*point, functions.values)).ok_or_else(|| lost(point.position))
             };
-            let lost =
-                |point: &SurfacePoint| Failure::LostCondition { body: 0, condition: number, place: point.position };
-            let points = parts.iter().flatten().map(|point| of_material(point).ok_or_else(|| lost(point)));
-            let points = points.collect::<Result<Vec<_>, _>>()?;
+            let points = parts.iter().flatten().map(of_material).collect::<Result<Vec<_>, _>>()?;
             let space = multiplier_space(patch, &parts);
-            let beyond = |point| Failure::LostCondition { body: 0, condition: number, place: point };
-            moments.extend(moments_of(number, condition.hold, &space, points.into_iter()).map_err(beyond)?);
+            moments.extend(moments_of(number, condition.hold, &space, points.into_iter()).map_err(lost)?);
         }
         if moments.is_empty() {
             return Ok(None);

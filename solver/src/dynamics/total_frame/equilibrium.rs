@@ -6,7 +6,7 @@
 
 use super::TotalFrame;
 use super::tangent::Tangent;
-use crate::dynamics::critical_step::StiffnessOperator;
+use crate::dynamics::critical_step::{StiffnessOperator, dot};
 use crate::dynamics::failure::Failure;
 use crate::linear_algebra::extremes::{larger, largest};
 
@@ -78,9 +78,7 @@ impl TotalFrame {
         for (&(at, component), change) in free.iter().zip(change) {
             self.displacement[component][at] += part * change;
         }
-        if let Some(sheets) = self.lattice.sheets() {
-            sheets.spread(&mut self.displacement);
-        }
+        self.lattice.spread(&mut self.displacement);
     }
 
     /// External minus internal force at the free components, and the largest internal or external one, N/m.
@@ -173,8 +171,4 @@ fn refuse_unbalanced(motions: &[Vec<f64>], residual: &[f64]) -> Result<(), Failu
         }
     }
     Ok(())
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

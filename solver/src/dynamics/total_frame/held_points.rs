@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::dynamics::surface::mouths;
 use crate::particles::lattice::Lattice;
-use crate::scene::{Body, Boundary, Layout, Side};
+use crate::scene::{Body, Boundary, Layout};
 use crate::splines::patch::{Patch, control_points_on};
 use crate::splines::quadrature::Rule;
 
@@ -20,7 +20,7 @@ pub(super) fn held_points(patch: &Patch, lattice: &Lattice, body: &Body, boundar
     if boundary.part.is_none() && lattice.sheets().is_none() {
         return control_points_on(boundary.side, lattice.grid);
     }
-    let along = usize::from(matches!(boundary.side, Side::Left | Side::Right));
+    let along = boundary.side.along();
     let part = boundary.part.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
     let rule = Rule::new(Layout::Gauss, patch.spaces[along].degree() + 1);
     let mut integrals = BTreeMap::<usize, [f64; 2]>::new(); // on the part, and in all

@@ -25,9 +25,7 @@ impl TotalFrame {
             return Vec::new();
         }
         let mut acceleration = self.acceleration.clone();
-        if let Some(sheets) = self.lattice.sheets() {
-            sheets.spread(&mut acceleration);
-        }
+        self.lattice.spread(&mut acceleration);
         self.domains.iter().map(|domain| (domain.column.clone(), self.j_integral(domain, &acceleration))).collect()
     }
 

@@ -395,9 +395,7 @@ impl Levels {
             self.functions = self.regions.functions(frames);
             self.take_regions(frames);
         }
-        for load in &mut self.phase_loads {
-            archive.list(load)?;
-        }
+        self.phase_loads.iter_mut().try_for_each(|load| archive.list(load))?;
         if archive.is_reader()
             && let Some(mut fields) = self.phase_fields(frames)
         {

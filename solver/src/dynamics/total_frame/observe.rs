@@ -154,11 +154,6 @@ impl TotalFrame {
         (self.thickness * masses.iter().sum::<f64>(), [momentum(0), momentum(1)])
     }
 
-    /// Thickness, m.
-    pub(super) fn thickness(&self) -> f64 {
-        self.thickness
-    }
-
     /// Elastic energy, J.
     pub fn elastic_energy(&self) -> f64 {
         self.elastic_energy * self.thickness

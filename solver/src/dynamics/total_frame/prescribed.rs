@@ -33,9 +33,7 @@ impl Reactions {
         if self.0.is_empty() {
             return;
         }
-        for reaction in &mut self.0 {
-            reaction.begin();
-        }
+        self.0.iter_mut().for_each(Reaction::begin);
         for (at, component, number) in constraints.iter() {
             self.0[number].add(component, -net[component][at]);
         }

@@ -32,14 +32,7 @@ impl TotalFrame {
     /// Internal forces (N/m) of the undamaged body under a displacement (m), linear in it.
     pub(crate) fn elastic_forces(&self, displacement: &VectorField, strips: &mut StripForces, out: &mut VectorField) {
         elastic_forces(&self.lattice, self.moduli, Kinematics::Small, displacement, strips, out);
-        self.fold(out);
-    }
-
-    /// Moves forces at copies of control points to their originals.
-    pub(super) fn fold(&self, forces: &mut VectorField) {
-        if let Some(sheets) = self.lattice.sheets() {
-            forces.iter_mut().for_each(|component| sheets.fold(component));
-        }
+        self.lattice.fold(out);
     }
 
     /// Stiffness of the undamaged body on its free degrees of freedom.
@@ -60,7 +53,7 @@ impl TotalFrame {
 pub struct LatticeStiffness<'a> {
     frame: &'a TotalFrame,
     free: Vec<(usize, usize)>,
-    field: VectorField,
+    pub(super) field: VectorField,
     image: VectorField,
     strips: StripForces,
 }
@@ -71,19 +64,17 @@ impl LatticeStiffness<'_> {
         &self.free
     }
 
-    fn unpack(&mut self, x: &[f64]) {
+    /// Writes a motion of the free degrees of freedom into [`Self::field`].
+    pub(super) fn unpack(&mut self, x: &[f64]) {
         for (&(at, component), x) in self.free.iter().zip(x) {
             self.field[component][at] = *x;
         }
-        if let Some(sheets) = self.frame.lattice.sheets() {
-            sheets.spread(&mut self.field);
-        }
+        self.frame.lattice.spread(&mut self.field);
     }
 
-    /// Adds what springs along a boundary that may meet others answer to a motion.
-    pub(super) fn add_springs(&mut self, x: &[f64], forces: &mut VectorField) {
+    /// Adds what springs along a boundary that may meet others answer to the motion in [`Self::field`].
+    pub(super) fn add_springs(&self, forces: &mut VectorField) {
         if let Some(boundary) = &self.frame.boundary {
-            self.unpack(x);
             boundary.add_springs(&self.field, forces);
         }
     }
@@ -113,7 +104,7 @@ impl StiffnessOperator for LatticeStiffness<'_> {
         self.unpack(x);
         let mut image = std::mem::take(&mut self.image);
         self.frame.elastic_forces(&self.field, &mut self.strips, &mut image);
-        self.add_springs(x, &mut image);
+        self.add_springs(&mut image);
         self.pack_forces(&mut image, out);
         self.image = image;
     }

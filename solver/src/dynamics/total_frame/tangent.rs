@@ -70,7 +70,7 @@ impl TotalFrame {
         } else {
             elastic_forces(lattice, *moduli, *kinematics, displacement, &mut strips, &mut out);
         }
-        self.fold(&mut out);
+        lattice.fold(&mut out);
         out
     }
 
@@ -88,26 +88,25 @@ pub(super) struct Tangent<'a> {
     undeformed: LatticeStiffness<'a>,
     gradients: Vec<[Lane; 4]>,
     strips: StripForces,
-    direction: VectorField,
     forces: VectorField,
 }
 
 impl<'a> Tangent<'a> {
     pub(super) fn new(frame: &'a TotalFrame) -> Self {
-        let zeros = || [frame.grid.zeros(), frame.grid.zeros()];
         Self {
             frame,
             undeformed: frame.stiffness_operator(),
             gradients: gradients(&frame.lattice, &frame.displacement),
             strips: frame.strip_forces(),
-            direction: zeros(),
-            forces: zeros(),
+            forces: [frame.grid.zeros(), frame.grid.zeros()],
         }
     }
 
-    /// Change of the internal forces along the direction, with the phase field at the points as it is now.
+    /// Change of the internal forces along the motion at hand, with the phase field at the points as it is
+    /// now.
     fn forces_along(&mut self) {
-        let Self { frame, gradients, strips, direction, forces, .. } = self;
+        let Self { frame, undeformed, gradients, strips, forces } = self;
+        let direction = &undeformed.field;
         let TotalFrame { lattice, moduli, kinematics, fracture, .. } = frame;
         match fracture {
             None => {
@@ -120,7 +119,7 @@ impl<'a> Tangent<'a> {
             }
         }
         strips.assemble(lattice.grid.stride, forces);
-        frame.fold(forces);
+        lattice.fold(forces);
     }
 }
 
@@ -130,17 +129,12 @@ impl StiffnessOperator for Tangent<'_> {
     }
 
     fn stiffness(&mut self, x: &[f64], out: &mut [f64]) {
-        for (&(at, component), x) in self.undeformed.degrees_of_freedom().iter().zip(x) {
-            self.direction[component][at] = *x;
-        }
-        if let Some(sheets) = self.frame.lattice.sheets() {
-            sheets.spread(&mut self.direction);
-        }
+        self.undeformed.unpack(x);
         self.forces_along();
         for load in &self.frame.loads {
-            load.add_change(-load.factor.at(self.frame.time), &self.direction, &mut self.forces);
+            load.add_change(-load.factor.at(self.frame.time), &self.undeformed.field, &mut self.forces);
         }
-        self.undeformed.add_springs(x, &mut self.forces);
+        self.undeformed.add_springs(&mut self.forces);
         self.undeformed.pack_forces(&mut self.forces, out);
     }
 

@@ -10,7 +10,7 @@ impl DiscreteField {
         EndOfStep {
             kinetic: nodes.kinetic_energy(&nodes.velocity),
             momentum: nodes.momentum(&nodes.velocity),
-            not_followed: nodes.power_not_followed(),
+            not_followed: nodes.power(false),
         }
     }
 
@@ -23,7 +23,7 @@ impl DiscreteField {
         let driven = self.edges.as_mut().map_or(0.0, |edges| edges.work(dt));
         let on_points = now + forced_now + weight - self.stress_work / dt;
         self.losses.kinetic += end_of_step.kinetic - self.nodes.kinetic_energy(&self.nodes.arrived);
-        self.losses.power += 0.5 * dt * (end_of_step.not_followed + on_points - self.nodes.power_followed());
+        self.losses.power += 0.5 * dt * (end_of_step.not_followed + on_points - self.nodes.power(true));
         self.losses.imposed += fault!("loss-forgotten", imposed.loss => 0.0);
         self.ledger.external_work += imposed.work + dt * weight + 0.5 * dt * (before + now);
         self.ledger.external_work += driven + 0.5 * dt * (forced_before + forced_now);

@@ -160,24 +160,13 @@ impl NodalFields {
         [0, 1].map(|c| self.mass.iter().zip(&velocity[c]).map(|(m, v)| m * v).sum())
     }
 
-    /// Power of the present forces on the present velocities at control points that accelerate, W/m.
-    pub(crate) fn power_followed(&self) -> f64 {
+    /// Power of the present forces on the present velocities, W/m: at control points that accelerate if
+    /// `followed`, at the others if not.
+    pub(crate) fn power(&self, followed: bool) -> f64 {
         let mut power = 0.0;
         for component in 0..2 {
             let nodes = self.force[component].iter().zip(&self.velocity[component]).zip(&self.inverse_mass);
-            for ((force, velocity), _) in nodes.filter(|(_, inverse)| **inverse > 0.0) {
-                power += force * velocity;
-            }
-        }
-        power
-    }
-
-    /// Power of the present forces on the velocity, less [`Self::power_followed`], W/m.
-    pub(crate) fn power_not_followed(&self) -> f64 {
-        let mut power = 0.0;
-        for component in 0..2 {
-            let nodes = self.force[component].iter().zip(&self.velocity[component]).zip(&self.inverse_mass);
-            for ((force, velocity), _) in nodes.filter(|(_, inverse)| **inverse == 0.0) {
+            for ((force, velocity), _) in nodes.filter(|(_, inverse)| (**inverse > 0.0) == followed) {
                 power += force * velocity;
             }
         }

@@ -44,7 +44,7 @@ impl HeldSide {
         density: f64,
         dt: f64,
     ) -> Result<bool, OutsidePatch> {
-        let along = self.along();
+        let along = self.boundary.side.along();
         let mut went_on = false;
         for place in self.material.iter_mut().flatten().filter(|_| self.boundary.fix != [true; 2]) {
             let reached = |place: &Follower| patch.spaces[along].first_function(place.position[along]);
@@ -56,17 +56,12 @@ impl HeldSide {
         Ok(went_on)
     }
 
-    /// Direction along the side.
-    fn along(&self) -> usize {
-        usize::from(matches!(self.boundary.side, Side::Left | Side::Right))
-    }
-
     /// Control points that are held on a part of the patch.
     fn held(&self, part: &Patch) -> Vec<usize> {
         let (grid, side) = (part.control_grid(), self.boundary.side);
         let all = control_points_on(side, grid);
         let Some(places) = &self.material else { return all };
-        let along = self.along();
+        let along = side.along();
         let space = &part.spaces[along];
         let mut reached = vec![false; all.len()];
         for first in places.iter().filter_map(|place| space.first_function(place.position[along])) {
@@ -99,7 +94,7 @@ fn material_on(patch: &Patch, body: &Body, boundary: &Boundary) -> Vec<Follower>
 /// Whether a condition is one on control points of a side: all of the side is at rest, and material cannot
 /// leave it.
 pub(crate) fn is_fixed(boundary: &Boundary) -> bool {
-    let across = usize::from(matches!(boundary.side, Side::Bottom | Side::Top));
+    let (across, _) = boundary.side.axis();
     boundary.fix[across] && boundary.prescribed.is_at_rest() && boundary.part.is_none() && boundary.name.is_none()
 }
 
@@ -119,7 +114,7 @@ fn edge_of(patch: &Patch, boundary: &Boundary) -> Edge {
     let whole = Shape::Rectangle { min: spans.map(|s| s[0].left), max: spans.map(|s| s[s.len() - 1].right) };
     let mut segment = whole.side(boundary.side).unwrap_or_default();
     if let Some(part) = boundary.part {
-        let along = usize::from(matches!(boundary.side, Side::Left | Side::Right));
+        let along = boundary.side.along();
         segment.iter_mut().zip(part).for_each(|(end, at)| end[along] = at);
     }
     Edge::Segment(segment)
@@ -127,12 +122,10 @@ fn edge_of(patch: &Patch, boundary: &Boundary) -> Edge {
 
 /// What the sides hold on a part of the patch that begins at an [`origin`](super::part::origin).
 pub(super) fn constraints(whole: &Patch, part: &Patch, origin: [usize; 2], sides: &[HeldSide]) -> Constraints {
-    let grids = [whole, part].map(|patch| patch.control_grid());
-    let reached = |side: Side| match side {
-        Side::Left => origin[0] == 0,
-        Side::Right => origin[0] + grids[1].columns == grids[0].columns,
-        Side::Bottom => origin[1] == 0,
-        Side::Top => origin[1] + grids[1].rows == grids[0].rows,
+    let reached = |side: Side| {
+        let (d, upper) = side.axis();
+        let [all, own] = [whole, part].map(|patch| patch.spaces[d].dimension());
+        if upper { origin[d] + own == all } else { origin[d] == 0 }
     };
     let reached: Vec<&HeldSide> = sides.iter().filter(|side| reached(side.boundary.side)).collect();
     let boundaries: Vec<Boundary> = reached.iter().map(|side| side.boundary.clone()).collect();

@@ -1,7 +1,6 @@
 //! The state of the bodies in the updated frame: what the points and surfaces carry. Order and nodal fields
 //! follow from it.
 
-use super::affine::AffineVelocities;
 use super::field::DiscreteField;
 use super::{UpdatedFrame, views};
 use crate::checkpoint::{Archive, StateError};
@@ -94,22 +93,13 @@ impl DiscreteField {
         archive.value(last_step)?;
         archive.value(crack_start)?;
         archive.list(points)?;
-        if let Some(AffineVelocities { gradients, .. }) = affine {
-            archive.list(gradients)?;
-        }
-        if let Some(gradients) = deformation {
-            archive.list(gradients)?;
-        }
+        affine.iter_mut().try_for_each(|affine| archive.list(&mut affine.gradients))?;
+        deformation.iter_mut().try_for_each(|gradients| archive.list(gradients))?;
         loads.iter_mut().try_for_each(|load| load.exchange(archive))?;
         sides.iter_mut().try_for_each(|side| side.exchange(archive))?;
         edges.iter_mut().try_for_each(|edges| edges.exchange(archive))?;
-        if let Some(surface) = surface {
-            surface.exchange(archive)?;
-        }
-        if let Some(fracture) = fracture {
-            fracture.exchange(archive)?;
-        }
-        Ok(())
+        surface.iter_mut().try_for_each(|surface| surface.exchange(archive))?;
+        fracture.iter_mut().try_for_each(|fracture| fracture.exchange(archive))
     }
 
     /// Order of the points, spans of the surface points, nodal fields.

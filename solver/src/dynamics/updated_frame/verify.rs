@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use super::UpdatedFrame;
-use super::field::DiscreteField;
 use super::volume_forcing::PointForcing;
 use crate::dynamics::failure::Failure;
 use crate::dynamics::forcing::Forcing;
@@ -15,8 +14,13 @@ impl UpdatedFrame {
     /// # Panics
     /// After a step.
     pub fn set_initial_velocity(&mut self, velocity: impl Fn([f64; 2]) -> [f64; 2]) {
-        assert!(self.fields.iter().all(|field| field.at_start), "a step has been taken");
-        self.fields.iter_mut().for_each(|field| field.set_velocity(&velocity));
+        for field in &mut self.fields {
+            assert!(field.at_start, "a step has been taken");
+            field.points.iter_mut().for_each(|point| point.velocity = velocity(point.reference()));
+            field.take_affine_velocities(&velocity);
+            field.points_to_grid();
+            field.respond();
+        }
     }
 
     /// Applies the volume loads of a forcing (`volume` alone) from the present time on, before the first
@@ -25,8 +29,13 @@ impl UpdatedFrame {
     /// # Panics
     /// After a step.
     pub fn apply_forcing(&mut self, forcing: Arc<dyn Forcing>) {
-        assert!(self.fields.iter().all(|field| field.at_start), "a step has been taken");
-        self.fields.iter_mut().for_each(|field| field.apply_forcing(Arc::clone(&forcing)));
+        for field in &mut self.fields {
+            assert!(field.at_start, "a step has been taken");
+            let (forcing, finite) = (Arc::clone(&forcing), field.deformation.is_some());
+            field.forcing = Some(PointForcing::new(forcing, finite, &field.points, field.time));
+            field.points_to_grid();
+            field.respond();
+        }
     }
 
     /// Moves the points for `dt` seconds with a velocity (m/s) prescribed at the Greville points of all
@@ -36,35 +45,16 @@ impl UpdatedFrame {
     /// # Errors
     /// As [`Self::step`].
     pub fn prescribe_motion(&mut self, velocity: impl Fn([f64; 2]) -> [f64; 2], dt: f64) -> Result<(), Failure> {
-        self.fields.iter_mut().try_for_each(|field| field.prescribe_motion(&velocity, dt))
-    }
-}
-
-impl DiscreteField {
-    fn set_velocity(&mut self, velocity: impl Fn([f64; 2]) -> [f64; 2]) {
-        for point in &mut self.points {
-            point.velocity = velocity(point.reference());
+        for field in &mut self.fields {
+            field.time += dt;
+            field.nodes.velocity = field.nodes.at_greville_points(&velocity);
+            field.velocity_transfer.keep();
+            if field.grid_to_points(dt)? {
+                field.sort()?;
+            }
+            field.crack_and_stress()?;
+            field.rebuild_grid()?;
         }
-        self.take_affine_velocities(velocity);
-        self.points_to_grid();
-        self.respond();
-    }
-
-    fn apply_forcing(&mut self, forcing: Arc<dyn Forcing>) {
-        self.forcing = Some(PointForcing::new(forcing, self.deformation.is_some(), &self.points, self.time));
-        self.points_to_grid();
-        self.respond();
-    }
-
-    fn prescribe_motion(&mut self, velocity: impl Fn([f64; 2]) -> [f64; 2], dt: f64) -> Result<(), Failure> {
-        self.time += dt;
-        self.nodes.velocity = self.nodes.at_greville_points(velocity);
-        self.velocity_transfer.keep();
-        if self.grid_to_points(dt)? {
-            self.sort()?;
-        }
-        self.crack_and_stress()?;
-        self.rebuild_grid()?;
         Ok(())
     }
 }
