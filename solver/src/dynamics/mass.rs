@@ -104,8 +104,7 @@ impl MassMatrix {
         for force in forces {
             let chunks = force.par_chunks_mut(chunk).zip(inverse.par_chunks(chunk)).enumerate();
             chunks.for_each(|(index, (force, inverse))| {
-                let rows = index * CHUNK_ROWS..((index + 1) * CHUNK_ROWS).min(grid.rows);
-                for used in in_use.within(grid, rows) {
+                for used in in_use.in_chunk(grid, index) {
                     force[used.clone()].iter_mut().zip(&inverse[used]).for_each(|(f, inverse)| *f *= inverse);
                 }
             });

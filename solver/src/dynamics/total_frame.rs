@@ -27,8 +27,6 @@ mod state;
 pub(crate) mod stiffness;
 mod tangent;
 
-use std::ops::Range;
-
 use rayon::prelude::*;
 
 use crate::dynamics::constraints::Constraints;
@@ -176,7 +174,7 @@ impl TotalFrame {
             let u = self.displacement[component].par_chunks_mut(chunk);
             v.zip(u).zip(self.acceleration[component].par_chunks(chunk)).enumerate().for_each(
                 |(index, ((v, u), a))| {
-                    for used in in_chunk(&self.in_use, self.grid, index) {
+                    for used in self.in_use.in_chunk(self.grid, index) {
                         for ((v, u), a) in v[used.clone()].iter_mut().zip(&mut u[used.clone()]).zip(&a[used]) {
                             *v += 0.5 * dt * a;
                             *u += dt * *v;
@@ -195,7 +193,7 @@ impl TotalFrame {
         for component in 0..2 {
             let v = self.velocity[component].par_chunks_mut(chunk);
             v.zip(self.acceleration[component].par_chunks(chunk)).enumerate().for_each(|(index, (v, a))| {
-                for used in in_chunk(&self.in_use, self.grid, index) {
+                for used in self.in_use.in_chunk(self.grid, index) {
                     for (v, a) in v[used.clone()].iter_mut().zip(&a[used]) {
                         *v += fault!("whole-kick", 0.5 * dt => dt) * a;
                     }
@@ -294,7 +292,7 @@ impl TotalFrame {
             let a = self.acceleration[component].par_chunks_mut(chunk);
             let mass = self.mass.row_sums().par_chunks(chunk);
             a.zip(self.internal[component].par_chunks(chunk)).zip(mass).enumerate().for_each(|(index, ((a, f), m))| {
-                for used in in_chunk(&self.in_use, self.grid, index) {
+                for used in self.in_use.in_chunk(self.grid, index) {
                     for ((a, f), m) in a[used.clone()].iter_mut().zip(&f[used.clone()]).zip(&m[used]) {
                         *a = gravity * m - f;
                     }
@@ -332,9 +330,4 @@ impl TotalFrame {
         let conditions = self.reactions.work(dt) + edges;
         self.ledger.external_work += dt * power + fault!("driven-work-left-out", conditions => 0.0);
     }
-}
-
-/// Places in a chunk of rows of a field that are in use.
-fn in_chunk(in_use: &ActiveColumns, grid: ControlGrid, index: usize) -> impl Iterator<Item = Range<usize>> {
-    in_use.within(grid, index * CHUNK_ROWS..((index + 1) * CHUNK_ROWS).min(grid.rows))
 }

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::control_grid::ControlGrid;
 use super::lane::{LANES, Scalar};
+use super::stencil::CHUNK_ROWS;
 
 /// Ranges of columns in each row of control points. Between two ranges lie at least [`LANES`] control points:
 /// shorter gaps take part, which costs less than to begin anew.
@@ -65,6 +66,11 @@ impl ActiveColumns {
             self.row(row).iter().map(move |range| place(range.start)..place(range.end))
         };
         rows.flat_map(of_row)
+    }
+
+    /// The same for a chunk of rows of a field.
+    pub(crate) fn in_chunk(&self, grid: ControlGrid, chunk: usize) -> impl Iterator<Item = Range<usize>> {
+        self.within(grid, chunk * CHUNK_ROWS..((chunk + 1) * CHUNK_ROWS).min(grid.rows))
     }
 
     /// Whether there are any in some rows.

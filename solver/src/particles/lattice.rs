@@ -193,13 +193,6 @@ impl Lattice {
         row >= self.rows.len() || self.is_occupied(row / self.strip_rows, tile)
     }
 
-    /// Whether the strip of a batch has points in its tile.
-    fn is_batch_occupied(&self, batch: usize) -> bool {
-        let Some(occupied) = &self.occupied else { return true };
-        let (row, tile, ..) = self.unbatch(batch);
-        occupied[row / self.strip_rows * self.tiles.len() + tile]
-    }
-
     /// Takes the points of strips of the patch away, or back, tile by tile: `occupied` goes strip by strip.
     pub(crate) fn occupy(&mut self, occupied: &[bool]) {
         let number = self.table_strips() * self.tiles.len();
@@ -319,11 +312,8 @@ impl Lattice {
         if let Some(cut) = self.cut_batch(batch) {
             return cut.weight;
         }
-        if !self.is_batch_occupied(batch) {
-            return Lane::ZERO;
-        }
         let (row, tile, b, a) = self.unbatch(batch);
-        self.weight(row, tile, b, a)
+        if self.is_occupied(row / self.strip_rows, tile) { self.weight(row, tile, b, a) } else { Lane::ZERO }
     }
 
     /// Weights of eight control points from index `at` of a field on; 1 over a rectangle.

@@ -241,14 +241,6 @@ impl LatticeFracture {
         self.model.columns_of_work(residual.is_some()).into_iter().zip(values).collect()
     }
 
-    /// Takes the state of a point from one of a coarser level, by batch and lane.
-    pub(crate) fn take_point(&mut self, coarse: &Self, at: (usize, usize), from: (usize, usize)) {
-        let pairs = [(&mut self.history, &coarse.history), (&mut self.phase, &coarse.phase)];
-        for (fine, coarse) in pairs.into_iter().chain([(&mut self.excess, &coarse.excess)]) {
-            fine[at.0][at.1] = coarse[from.0][from.1];
-        }
-    }
-
     /// Surface energy per unit thickness (J/m) and smallest c at a point.
     pub fn surface_energy(&self, lattice: &Lattice) -> (f64, f64) {
         let model = self.model;

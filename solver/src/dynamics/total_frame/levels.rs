@@ -32,6 +32,7 @@ use crate::phase_field::fracture::LatticeFracture;
 use crate::phase_field::levels::{OnLevel, PhaseFieldLevels};
 use crate::scene::{Crack, CrackKind, Scene};
 use crate::splines::insertion::knot_insertion;
+use crate::splines::spline::SplineSpace;
 use crate::transfer::sweep::StripForces;
 use copies::{copy_fields, copy_points};
 use regions::{Functions, ROWS, Regions};
@@ -86,8 +87,10 @@ impl Levels {
             mesh = mesh.halved();
         }
         let insertion = |pair: &[TotalFrame]| {
-            let [coarse, fine] = [0, 1].map(|level| &pair[level].patch.spaces);
-            [0, 1].map(|d| knot_insertion(&coarse[d], &fine[d]))
+            let middles = |space: &SplineSpace| -> Vec<f64> {
+                space.spans().iter().map(|span| 0.5 * (span.left + span.right)).collect()
+            };
+            pair[0].patch.spaces.each_ref().map(|space| knot_insertion(space, &middles(space)))
         };
         let dense = |frame: &TotalFrame| {
             let field = |load: &NodalLoad| {
@@ -335,8 +338,7 @@ impl Levels {
 
     /// Gives masses and loads to the functions in use.
     fn share(&self, frames: &mut [TotalFrame], functions: &[Functions]) {
-        let taken = |level: usize, at: usize| functions[level].known[at];
-        let below = |level: usize| self.interface(level, frames, |at| taken(level + 1, at));
+        let below = |level: usize| self.interface(level, frames, |at| functions[level + 1].known[at]);
         let insertions: Vec<Interface> = (0..self.insertions.len()).map(below).collect();
         let masses = self.truncated(frames, functions, &insertions, |level| &self.masses[level]);
         let of_load = |number: usize| {

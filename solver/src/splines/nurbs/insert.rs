@@ -1,10 +1,7 @@
-//! Knot insertion (Boehm 1980): the same geometry on more control points.
-//!
-//! Inserting u into the span `[U_k, U_(k+1))` replaces the control points `Q_i = a_i P_i + (1 − a_i) P_(i−1)`
-//! with `a_i = (u − U_i)/(U_(i+p) − U_i)` for `k − p < i ≤ k`, in homogeneous coordinates. These are convex
-//! combinations, so that round-off does not grow.
+//! Knot insertion in homogeneous coordinates: the same geometry on more control points.
 
 use super::{NurbsError, NurbsPatch};
+use crate::splines::insertion;
 
 impl NurbsPatch {
     /// The same geometry with `new` knots inserted in a direction (0 or 1), in any order and repeated as
@@ -23,13 +20,8 @@ impl NurbsPatch {
         all.sort_by(f64::total_cmp);
         super::check::knots(direction, degree, &all)?;
         self.with_direction_changed(direction, degree, &all, |line| {
-            let (mut knots, mut points) = (old.to_vec(), line.to_vec());
-            for &u in new {
-                points = insert(degree, &knots, &points, u);
-                let place = knots.partition_point(|&k| k <= u);
-                knots.insert(place, u);
-            }
-            points
+            let mix = |a: f64, p: &[f64; 3], q: &[f64; 3]| [0, 1, 2].map(|c| a * p[c] + (1.0 - a) * q[c]);
+            insertion::insert_knots(space, new, line.to_vec(), mix)
         })
     }
 
@@ -51,36 +43,9 @@ impl NurbsPatch {
     }
 }
 
-/// One knot into one line of control points.
-fn insert(degree: usize, knots: &[f64], points: &[[f64; 3]], u: f64) -> Vec<[f64; 3]> {
-    let k = knots.partition_point(|&knot| knot <= u) - 1;
-    (0..=points.len())
-        .map(|i| {
-            if i + degree <= k {
-                points[i]
-            } else if i > k {
-                points[i - 1]
-            } else {
-                let a = fault!("inserted-knot-halves", (u - knots[i]) / (knots[i + degree] - knots[i]) => 0.5);
-                [0, 1, 2].map(|c| a * points[i][c] + (1.0 - a) * points[i - 1][c])
-            }
-        })
-        .collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_parabola_is_halved_as_de_casteljau_does() {
-        let points = [[0.0, 0.0, 1.0], [1.0, 2.0, 1.0], [2.0, 0.0, 1.0]];
-        let knots = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
-        let once = insert(2, &knots, &points, 0.5);
-        assert_eq!(once, [[0.0, 0.0, 1.0], [0.5, 1.0, 1.0], [1.5, 1.0, 1.0], [2.0, 0.0, 1.0]]);
-        let twice = insert(2, &[0.0, 0.0, 0.0, 0.5, 1.0, 1.0, 1.0], &once, 0.5);
-        assert_eq!(twice[2], [1.0, 1.0, 1.0]);
-    }
 
     #[test]
     fn knots_outside_or_too_many_are_refused() {

@@ -6,7 +6,7 @@ use crate::linear_algebra::interface::Interface;
 use crate::linear_algebra::lane::LANES;
 use crate::particles::lattice::Lattice;
 
-/// Copies displacement and phase field to some functions of the finer level.
+/// Copies displacement, velocity and phase field to some functions of the finer level.
 pub(super) fn copy_fields(functions: &Interface, coarse: &TotalFrame, fine: &mut TotalFrame) {
     for d in 0..2 {
         functions.spread(&coarse.displacement[d], &mut fine.displacement[d]);
@@ -17,7 +17,7 @@ pub(super) fn copy_fields(functions: &Interface, coarse: &TotalFrame, fine: &mut
     }
 }
 
-/// Copies the state of points of a level to those of the next in tiles that are refined now, and were not
+/// Copies the history of points of a level to those of the next in tiles that are refined now, and were not
 /// before: each takes that of the nearest one.
 pub(super) fn copy_points(level: usize, [before, now]: [&Regions; 2], coarse: &TotalFrame, fine: &mut TotalFrame) {
     let (from, TotalFrame { lattice, fracture, .. }) = (&coarse.lattice, fine);
@@ -26,8 +26,9 @@ pub(super) fn copy_points(level: usize, [before, now]: [&Regions; 2], coarse: &T
     for (row, tile) in (0..lattice.patch_rows()).flat_map(|row| (0..lattice.tiles.len()).map(move |tile| (row, tile))) {
         for lane in (0..lattice.tiles[tile].count).filter(|lane| is_fresh([(tile * LANES + lane) / 2, row / 2])) {
             for (b, a) in (0..lattice.points[1]).flat_map(|b| (0..lattice.points[0]).map(move |a| (b, a))) {
-                let at = (lattice.batch(row, tile, b, a), lane);
-                fine.take_point(coarse, at, nearest_point(from, lattice, [row, tile, b, a], lane));
+                let at = lattice.batch(row, tile, b, a);
+                let from = nearest_point(from, lattice, [row, tile, b, a], lane);
+                fine.history[at][lane] = coarse.history[from.0][from.1];
             }
         }
     }
