@@ -2,9 +2,8 @@
 
 use std::ops::Range;
 
-use super::control_grid::ControlGrid;
+use super::control_grid::{CHUNK_ROWS, ControlGrid};
 use super::lane::{LANES, Scalar};
-use super::stencil::CHUNK_ROWS;
 
 /// Ranges of columns in each row of control points. Between two ranges lie at least [`LANES`] control points:
 /// shorter gaps take part, which costs less than to begin anew.

@@ -25,11 +25,12 @@ use rayon::prelude::*;
 use thiserror::Error;
 
 use crate::linear_algebra::active_columns::ActiveColumns;
+use crate::linear_algebra::control_grid::CHUNK_ROWS;
 use crate::linear_algebra::extremes::smaller;
 use crate::linear_algebra::interface::{Interface, fold_all, spread_all};
 use crate::linear_algebra::lane::{Scalar, Vectorised, add_product, dispatch};
 use crate::linear_algebra::preconditioner::Preconditioner;
-use crate::linear_algebra::stencil::{CHUNK_ROWS, Stencil};
+use crate::linear_algebra::stencil::Stencil;
 use crate::linear_algebra::terms::Coefficients;
 
 /// Ratio of two decreases from which on iterations count as stagnating.

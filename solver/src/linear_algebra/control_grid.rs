@@ -5,6 +5,8 @@
 
 use super::lane::LANES;
 
+/// Rows of control points whose partial sums are formed together.
+pub(crate) const CHUNK_ROWS: usize = 8;
 /// Room before the first control point of a row.
 const LEAD: usize = LANES;
 /// Least room behind the last one: the neighbours that functions of the highest degree and their penalty

@@ -11,12 +11,9 @@
 use rayon::prelude::*;
 
 use crate::linear_algebra::active_columns::ActiveColumns;
-use crate::linear_algebra::control_grid::ControlGrid;
+use crate::linear_algebra::control_grid::{CHUNK_ROWS, ControlGrid};
 use crate::linear_algebra::lane::{LANES, Lane, Scalar, Vectorised, dispatch};
 use crate::linear_algebra::terms::{Coefficients, Terms};
-
-/// Rows of control points whose partial sums are formed together.
-pub(crate) const CHUNK_ROWS: usize = 8;
 
 /// Couplings that are worth waking another thread for: some ten microseconds.
 const LEAST_WORK: usize = 50_000;
