@@ -9,7 +9,6 @@ use std::ops::Range;
 use serde::{Deserialize, Serialize};
 
 use crate::material::hencky::Gradient;
-use crate::particles::lattice::Lattice;
 use crate::splines::patch::Patch;
 use crate::splines::spline::{MAX_DEGREE, MeanFunctions, SplineSpace};
 
@@ -104,26 +103,12 @@ impl Point {
         [0, 1].map(|d| self.position[d] - self.displacement[d])
     }
 
-    /// A point at rest with a domain of a volume, m², and a ratio of width and height.
-    pub(crate) fn at_rest(position: [f64; 2], volume: f64, aspect: f64) -> Self {
-        let [velocity, displacement] = [[0.0; 2]; 2];
-        let half_width = [0.5 * (volume * aspect).sqrt(), 0.5 * (volume / aspect).sqrt()];
+    /// A point at rest with a domain of a width and a height, m.
+    pub(crate) fn at_rest(position: [f64; 2], [width, height]: [f64; 2]) -> Self {
+        let [velocity, displacement, offset] = [[0.0; 2]; 3];
         let (strain, stress) = ([0.0; 3], [0.0; 3]);
-        let offset = [0.0; 2];
+        let (volume, aspect, half_width) = (width * height, width / height, [0.5 * width, 0.5 * height]);
         Self { position, velocity, displacement, strain, stress, volume, aspect, half_width, offset }
-    }
-
-    /// The points of a lattice of `particles_per_cell` points a span on `patch`, at rest.
-    pub(crate) fn of_lattice(lattice: &Lattice, patch: &Patch, particles_per_cell: [usize; 2]) -> Vec<Self> {
-        let mut points = Vec::new();
-        lattice.for_each_point(|_, _, position, volume| {
-            let [width, height] = [0, 1].map(|d| {
-                let span = patch.spaces[d].find_span(position[d]).unwrap_or_default();
-                patch.spaces[d].spans()[span].length() / particles_per_cell[d] as f64
-            });
-            points.push(Self::at_rest(position, volume, width / height));
-        });
-        points
     }
 
     /// Deforms the domain: a box with the second moments of what `F = I + displacement` makes of it.
@@ -269,7 +254,7 @@ mod tests {
     use crate::scene::Mesh;
 
     fn at(x: f64, y: f64) -> Point {
-        Point::at_rest([x, y], x, 1.0)
+        Point::at_rest([x, y], [x, 1.0])
     }
 
     #[test]

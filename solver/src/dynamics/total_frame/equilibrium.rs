@@ -14,8 +14,7 @@ use crate::linear_algebra::extremes::{larger, largest};
 const TOLERANCE: f64 = 1e-9;
 /// The same of the largest nodal force at the start: where conditions only move a body, all forces vanish.
 const ROUND_OFF: f64 = 1e-12;
-/// Reduction of the residual by a linear solve, which the next step of Newton's method squares. A solve that
-/// goes further drifts along rigid motions that no condition holds.
+/// Reduction of the residual by a linear solve, which the next step of Newton's method squares.
 const REDUCTION: f64 = 1e-4;
 /// Most steps of Newton's method, and lengths of one: it converges in a few, or not at all.
 const MOST_STEPS: usize = 50;
@@ -49,7 +48,7 @@ impl TotalFrame {
             if largest(residual.iter().map(|r| r.abs())) <= larger(TOLERANCE * scale, least) {
                 return Ok(());
             }
-            let change = self.solve(&residual)?;
+            let change = self.solve(&free, &motions, &residual)?;
             let slope = dot(&residual, &change);
             let (mut taken, mut part, mut bounds) = (0.0, 1.0, [0.0, f64::INFINITY]);
             let descends = |_| {
@@ -128,8 +127,9 @@ impl TotalFrame {
         }
     }
 
-    /// Solves `K x = right` for the free components, to [`REDUCTION`] of the residual.
-    fn solve(&self, right: &[f64]) -> Result<Vec<f64>, Failure> {
+    /// Solves `K x = right` for the free components, to [`REDUCTION`] of the residual, without these motions:
+    /// what round-off leaves of them would grow, since they have no stiffness.
+    fn solve(&self, free: &[(usize, usize)], motions: &[Vec<f64>], right: &[f64]) -> Result<Vec<f64>, Failure> {
         let (mut operator, n) = (Tangent::new(self), right.len());
         let (mut x, mut r, mut image) = (vec![0.0; n], right.to_vec(), vec![0.0; n]);
         let mut z = vec![0.0; n];
@@ -150,6 +150,7 @@ impl TotalFrame {
                 x[i] += step * p[i];
                 r[i] -= step * image[i];
             }
+            self.balance(free, motions, &mut r);
             operator.divide_by_mass(&r, &mut z);
             let next = dot(&r, &z);
             for i in 0..n {

@@ -18,7 +18,7 @@ use crate::dynamics::failure::Failure;
 use crate::dynamics::loads::{Balance, LostTraction};
 use crate::material::degradation::FractureModel;
 use crate::material::elasticity::ElasticModuli;
-use crate::particles::lattice::Lattice;
+use crate::particles::lattice::moving_points;
 use crate::particles::points::{Cells, OutsidePatch, Point};
 use crate::phase_field::fracture::crack_start;
 use crate::scene::{Body, Boundary, Kinematics, Material, Plane, Scene, Transfer};
@@ -68,7 +68,8 @@ impl DiscreteField {
     /// Sorted points at rest, on nodal fields of zeros.
     fn at_rest(scene: &Scene, body: &Body, whole: &Arc<Patch>) -> Result<Self, Failure> {
         let (material, analysis) = (&scene.materials[&body.material], &scene.analysis);
-        let mut points = Point::of_lattice(&Lattice::moving(whole, body), whole, body.particles_per_cell);
+        let place = |(position, size)| Point::at_rest(position, size);
+        let mut points: Vec<Point> = moving_points(whole, body).into_iter().map(place).collect();
         if points.is_empty() {
             return Err(Failure::NoPoints(0));
         }

@@ -137,7 +137,7 @@ mod tests {
         for (row, line) in rows.iter().rev().enumerate() {
             for (column, mark) in line.chars().enumerate().filter(|(_, mark)| *mark != ' ') {
                 let position = [0.1 * column as f64, 0.1 * row as f64];
-                points.push(Point::at_rest(position, 0.01, 1.0));
+                points.push(Point::at_rest(position, [0.1, 0.1]));
                 let phase = if mark == '#' { 1.0 } else { 0.0 };
                 fracture.push(FracturePoint { phase, ..Default::default() });
             }

@@ -293,7 +293,7 @@ mod tests {
         for n in 0..256 {
             let at = [(n % 16) as f64 * 0.5 + 0.25, (n / 16) as f64 * 0.5 + 0.25];
             let position = [0, 1].map(|d| 3.0 + shift[d] + stretch[d] * at[d]);
-            let mut point = Point { stress, ..Point::at_rest(position, 0.25, 1.0) };
+            let mut point = Point { stress, ..Point::at_rest(position, [0.5, 0.5]) };
             point.deform_domain(&[[stretch[0] - 1.0, 0.0], [0.0, stretch[1] - 1.0]]);
             points.push(point);
         }

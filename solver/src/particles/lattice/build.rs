@@ -53,22 +53,6 @@ impl Lattice {
         lattice
     }
 
-    /// The points of `body` on `patch` as they begin to move; in a span that its boundary cuts there are
-    /// fewer than the degree needs, since they do not stay there.
-    pub(crate) fn moving(patch: &Patch, body: &Body) -> Self {
-        let mut lattice = Self::of_tables(patch, body);
-        if !fills_lattice(false, &body.shape) {
-            lattice.keep_inside(&body.shape);
-            let edges = cut::edges_in_spans(body.shape.edges(), &patch.spaces);
-            let rules = Rules::plain(body.layout, most(body));
-            let cut: Vec<_> = cut_points(patch, body, [&edges, &EdgesInSpans::new()], rules).collect();
-            if !cut.is_empty() {
-                lattice.append_cut(patch, cut);
-            }
-        }
-        lattice
-    }
-
     /// Every point of the tables.
     fn of_tables(patch: &Patch, body: &Body) -> Self {
         let [x, y] = directions(body, &patch.spaces, patch.geometry.is_some()).map(|along| along.columns());

@@ -24,18 +24,22 @@ const TURN: f64 = 0.15;
 const ALONG: f64 = 0.55;
 /// Most times a span is quartered.
 const DEPTH: usize = 7;
+/// Lines across in a span that is divided into boxes, for each row of points in a whole one: steps of boxes
+/// along an oblique edge have forces of their own.
+const LINES: usize = 2;
 
 /// Lower left and upper right corner, m.
 type Corners = [[f64; 2]; 2];
-/// Position (m) and weight (m²) of a point.
-pub(super) type WeightedPoint = ([f64; 2], f64);
+/// Position of a point, and width and height of the box that it stands for, m.
+pub(super) type PointBox = ([f64; 2], [f64; 2]);
 
-/// The rules of a span that the boundary cuts, along both directions.
+/// How the part of a span that the boundary leaves is divided.
 #[derive(Debug, Clone)]
-pub(super) struct Rules {
-    across: Rule,
-    /// Between straight edges, and beside arcs.
-    along: [Rule; 2],
+pub(super) enum Rules {
+    /// By Gauss points on lines across, and by lines: between straight edges, and beside arcs.
+    Exact { across: Rule, along: [Rule; 2] },
+    /// Into boxes no larger than those of so many points per direction in a whole span; twice as many lines.
+    Boxes([usize; 2]),
 }
 
 impl Rules {
@@ -43,20 +47,15 @@ impl Rules {
     pub(super) fn exact(spaces: &[SplineSpace; 2], points: usize) -> Self {
         let across = spaces.iter().map(|space| space.degree() + 1).fold(points, usize::max);
         let rule = |count: usize| Rule::new(Layout::Gauss, count.min(MAX_POINTS));
-        Self { across: rule(across), along: [2 * across - 1, 2 * across + 2].map(rule) }
-    }
-
-    /// So many points on a line across, and as many lines: areas are exact between straight edges.
-    pub(super) fn plain(layout: Layout, points: usize) -> Self {
-        let rule = Rule::new(layout, points);
-        Self { across: rule.clone(), along: [rule.clone(), rule] }
+        Self::Exact { across: rule(across), along: [2 * across - 1, 2 * across + 2].map(rule) }
     }
 }
 
-/// A shape and the rules to integrate over it.
+/// A shape, and the rules to integrate over its part of a span of this width and height, m.
 struct Cutter<'a> {
     shape: &'a Shape,
-    rules: Rules,
+    rules: &'a Rules,
+    span: [f64; 2],
 }
 
 /// Edges of a shape by column and row of the spans that they run through.
@@ -92,15 +91,16 @@ pub(super) fn cut_spans<'a>(
     [edges, slits]: [&'a EdgesInSpans; 2],
     spaces: &'a [SplineSpace; 2],
     rules: Rules,
-) -> impl Iterator<Item = ([usize; 2], Vec<WeightedPoint>)> + 'a {
-    let cutter = Cutter { shape, rules };
+) -> impl Iterator<Item = ([usize; 2], Vec<PointBox>)> + 'a {
     let spans: BTreeSet<[usize; 2]> = edges.keys().chain(slits.keys()).copied().collect();
     spans.into_iter().filter_map(move |span| {
         let [low, high] = corners(spaces, span);
+        let cutter = Cutter { shape, rules: &rules, span: [0, 1].map(|d| high[d] - low[d]) };
         let mut points = Vec::new();
         let all: Vec<&BoundaryEdge> = edges.get(&span).into_iter().chain(slits.get(&span)).flatten().collect();
         cutter.add([low, high], &all, 0, &mut points);
-        let part = points.iter().map(|point| point.1).sum::<f64>() / ((high[0] - low[0]) * (high[1] - low[1]));
+        let part = points.iter().map(|(_, [width, height])| width * height).sum::<f64>()
+            / ((high[0] - low[0]) * (high[1] - low[1]));
         let is_cut = part < 1.0 - SLIVER || slits.contains_key(&span);
         (part > SLIVER && is_cut).then_some((span, points))
     })
@@ -135,7 +135,7 @@ fn crosses(edge: &BoundaryEdge, [low, high]: Corners) -> bool {
 
 impl Cutter<'_> {
     /// Adds the points of the part of a box that is inside.
-    fn add(&self, corners: Corners, edges: &[&BoundaryEdge], depth: usize, out: &mut Vec<WeightedPoint>) {
+    fn add(&self, corners: Corners, edges: &[&BoundaryEdge], depth: usize, out: &mut Vec<PointBox>) {
         let [low, high] = corners;
         let middle = [0, 1].map(|d| 0.5 * (low[d] + high[d]));
         let edges: Vec<&BoundaryEdge> = edges.iter().copied().filter(|edge| crosses(edge, corners)).collect();
@@ -167,21 +167,37 @@ impl Cutter<'_> {
         self.slice(corners, &edges, inner, usize::from(arcs), out);
     }
 
-    /// Gauss points in all of a box.
-    fn fill(&self, [low, high]: Corners, out: &mut Vec<WeightedPoint>) {
-        let points = |d: usize| self.rules.across.between(low[d], high[d]);
-        out.extend(points(1).flat_map(|(y, v)| points(0).map(move |(x, w)| ([x, y], v * w))));
+    /// Places of points on a line along direction `d`, and the lengths that they stand for.
+    fn points(&self, [from, to]: [f64; 2], d: usize) -> Vec<(f64, f64)> {
+        match self.rules {
+            Rules::Exact { across, .. } => across.between(from, to).collect(),
+            Rules::Boxes(points) => self.equal([from, to], d, points[d]),
+        }
     }
 
-    /// Gauss points on lines across direction `inner`.
-    fn slice(
-        &self,
-        [low, high]: Corners,
-        edges: &[&BoundaryEdge],
-        inner: usize,
-        arcs: usize,
-        out: &mut Vec<WeightedPoint>,
-    ) {
+    /// Places of lines in a slab along direction `d`, and the widths that they stand for.
+    fn lines(&self, [from, to]: [f64; 2], d: usize, arcs: usize) -> Vec<(f64, f64)> {
+        match self.rules {
+            Rules::Exact { along, .. } => along[arcs].between(from, to).collect(),
+            Rules::Boxes(points) => self.equal([from, to], d, LINES * points[d]),
+        }
+    }
+
+    /// Middles and lengths of equal parts, of which there are so many in a whole span.
+    fn equal(&self, [from, to]: [f64; 2], d: usize, per_span: usize) -> Vec<(f64, f64)> {
+        let parts = ((to - from) / self.span[d] * per_span as f64 - 1e-9).ceil().max(1.0);
+        let length = (to - from) / parts;
+        (0..parts as usize).map(|part| (from + (part as f64 + 0.5) * length, length)).collect()
+    }
+
+    /// Points in all of a box.
+    fn fill(&self, [low, high]: Corners, out: &mut Vec<PointBox>) {
+        let [columns, rows] = [0, 1].map(|d| self.points([low[d], high[d]], d));
+        out.extend(rows.iter().flat_map(|&(y, v)| columns.iter().map(move |&(x, w)| ([x, y], [w, v]))));
+    }
+
+    /// Points on lines across direction `inner`.
+    fn slice(&self, [low, high]: Corners, edges: &[&BoundaryEdge], inner: usize, arcs: usize, out: &mut Vec<PointBox>) {
         let outer = 1 - inner;
         let mut breaks = vec![low[outer], high[outer]];
         for (n, edge) in edges.iter().enumerate() {
@@ -193,15 +209,17 @@ impl Cutter<'_> {
         breaks.retain(|x| (low[outer]..=high[outer]).contains(x));
         breaks.sort_by(f64::total_cmp);
         for slab in breaks.windows(2).filter(|slab| slab[1] - slab[0] > 1e-14 * (high[outer] - low[outer])) {
-            for (place, weight) in self.rules.along[arcs].between(slab[0], slab[1]) {
-                let on_line = |x: f64| if inner == 0 { [x, place] } else { [place, x] };
+            for (place, weight) in self.lines([slab[0], slab[1]], outer, arcs) {
+                let along = |x: f64, y: f64| if inner == 0 { [x, y] } else { [y, x] };
+                let on_line = |x: f64| along(x, place);
                 let mut ends = vec![low[inner], high[inner]];
                 let met = edges.iter().flat_map(|edge| edge.crossings(outer, place));
                 ends.extend(met.filter(|x| (low[inner]..=high[inner]).contains(x)));
                 ends.sort_by(f64::total_cmp);
                 for part in ends.windows(2) {
                     if part[1] > part[0] && self.shape.contains(on_line(0.5 * (part[0] + part[1]))) {
-                        out.extend(self.rules.across.between(part[0], part[1]).map(|(x, w)| (on_line(x), weight * w)));
+                        let points = self.points([part[0], part[1]], inner).into_iter();
+                        out.extend(points.map(|(x, length)| (on_line(x), along(length, weight))));
                     }
                 }
             }
@@ -215,7 +233,7 @@ mod tests {
     use crate::scene::Mesh;
     use crate::splines::patch::Patch;
 
-    fn all(shape: &Shape, spaces: &[SplineSpace; 2]) -> BTreeMap<[usize; 2], Vec<WeightedPoint>> {
+    fn all(shape: &Shape, spaces: &[SplineSpace; 2]) -> BTreeMap<[usize; 2], Vec<PointBox>> {
         let edges = edges_in_spans(shape.edges(), spaces);
         cut_spans(shape, [&edges, &EdgesInSpans::new()], spaces, Rules::exact(spaces, 1)).collect()
     }
@@ -232,11 +250,11 @@ mod tests {
                     let inside = shape.contains([0.5 * (x.left + x.right), 0.5 * (y.left + y.right)]);
                     let points = rule
                         .between(y.left, y.right)
-                        .flat_map(|(y, v)| rule.between(x.left, x.right).map(move |(x, w)| ([x, y], v * w)));
+                        .flat_map(|(y, v)| rule.between(x.left, x.right).map(move |(x, w)| ([x, y], [w, v])));
                     points.filter(|_| inside).collect::<Vec<_>>()
                 };
                 let points = cut.get(&[i, j]).cloned().unwrap_or_else(whole);
-                sum += points.iter().map(|([x, y], w)| w * x.powi(a) * y.powi(b)).sum::<f64>();
+                sum += points.iter().map(|([x, y], [w, v])| w * v * x.powi(a) * y.powi(b)).sum::<f64>();
             }
         }
         sum
@@ -293,7 +311,7 @@ mod tests {
             of: Box::new(Shape::Disk { center: [0.5, 0.5], radius: 0.4 }),
             minus: vec![Shape::Disk { center: [0.7, 0.5], radius: 0.3 }],
         };
-        let area: f64 = all(&two, &spaces).values().flatten().map(|point| point.1).sum();
+        let area: f64 = all(&two, &spaces).values().flatten().map(|(_, [w, v])| w * v).sum();
         let whole = spaces[0].spans().iter().flat_map(|x| spaces[1].spans().iter().map(move |y| [x, y]));
         let cut = all(&two, &spaces);
         let inside = whole.enumerate().filter(|(n, [x, y])| {

@@ -1,6 +1,6 @@
 //! Points of the spans that the boundary cuts, eight points of one span side by side.
 
-use super::cut::WeightedPoint;
+use super::cut::PointBox;
 use super::sheets::FunctionIndex;
 use crate::linear_algebra::lane::{LANES, Lane};
 use crate::splines::patch::Patch;
@@ -12,15 +12,15 @@ pub(super) struct CutPoint {
     pub span: [usize; 2],
     /// Column and row of its first function.
     pub first: FunctionIndex,
-    /// Position (m) and weight (m²).
-    pub point: WeightedPoint,
+    /// Position and box, m.
+    pub point: PointBox,
     /// Rows by which its control points lie behind those of the patch.
     pub lift: usize,
 }
 
 impl CutPoint {
     /// The points of a span.
-    pub(super) fn of_span(patch: &Patch, span: [usize; 2], points: Vec<WeightedPoint>) -> impl Iterator<Item = Self> {
+    pub(super) fn of_span(patch: &Patch, span: [usize; 2], points: Vec<PointBox>) -> impl Iterator<Item = Self> {
         let first = first_function(patch, span);
         points.into_iter().map(move |point| Self { span, first, point, lift: 0 })
     }
@@ -49,7 +49,7 @@ impl CutBatch {
         patch: &Patch,
         span: [usize; 2],
         lift: usize,
-        points: &[WeightedPoint],
+        points: &[PointBox],
     ) -> impl Iterator<Item = Self> {
         let first = first_function(patch, span);
         points.chunks(LANES).map(move |points| {
@@ -62,8 +62,8 @@ impl CutBatch {
                 derivative: [[Lane::ZERO; MAX_ORDER]; 2],
             };
             for lane in 0..LANES {
-                let (position, weight) = points.get(lane).copied().unwrap_or((points[0].0, 0.0));
-                batch.weight[lane] = weight;
+                let (position, [width, height]) = points.get(lane).copied().unwrap_or((points[0].0, [0.0; 2]));
+                batch.weight[lane] = width * height;
                 for d in 0..2 {
                     let functions = patch.spaces[d].shape_functions(span[d], position[d]);
                     batch.position[d][lane] = position[d];

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use super::Lattice;
-use super::cut::WeightedPoint;
+use super::cut::PointBox;
 use super::cut_batch::{CutBatch, CutPoint, first_function};
 use super::sheets::FunctionIndex;
 use crate::linear_algebra::lane::{LANES, Lane};
@@ -64,7 +64,7 @@ impl Lattice {
     /// Takes over the points of cut spans, in batches up to a whole number of spans of a tile, behind whole
     /// strips of tables.
     pub(super) fn append_cut(&mut self, patch: &Patch, points: Vec<CutPoint>) {
-        let mut spans: BTreeMap<(usize, [usize; 2]), Vec<WeightedPoint>> = BTreeMap::new();
+        let mut spans: BTreeMap<(usize, [usize; 2]), Vec<PointBox>> = BTreeMap::new();
         for CutPoint { span: [i, j], lift, point, .. } in points {
             spans.entry((lift, [j, i])).or_default().push(point);
         }
