@@ -27,6 +27,8 @@ use crate::splines::spline::SplineSpace;
 
 /// Least length of a part of an edge over which multipliers are polynomials, in spans.
 const PART: f64 = 2.0;
+/// Parts by which an edge may be too short for their number.
+const ROUND_OFF: f64 = 1e-9;
 /// Yield of a multiplier at control points that can move, of that at all of them, that counts as none.
 const YIELDS: f64 = 1e-9;
 
@@ -189,18 +191,23 @@ pub(in crate::dynamics) fn multiplier_space(patch: &Patch, parts: &[Vec<SurfaceP
         };
         larger(span(0), span(1))
     };
-    let wanted_spans = fault!("edge-multipliers-too-few", PART => 40.0);
-    let (mut knots, mut end, mut since, mut wanted) = (Vec::new(), 0.0, 0.0, 0.0);
-    let total: f64 = parts.iter().map(length).sum();
+    let wanted = fault!("edge-multipliers-too-few", PART => 40.0);
+    // Length along the edge, and the same in parts of the least length.
+    let mut ends = vec![[0.0; 2]];
     for part in parts.iter().filter(|part| !part.is_empty()) {
-        (end, since, wanted) = (end + length(part), since + length(part), larger(wanted, wanted_spans * size(part)));
-        if since >= wanted && total - end >= wanted {
-            knots.push(end);
-            (since, wanted) = (0.0, 0.0);
-        }
+        let [along, number] = ends[ends.len() - 1];
+        ends.push([along + length(part), number + length(part) / (wanted * size(part))]);
     }
-    let is_short = total < PART * parts.iter().filter(|part| !part.is_empty()).map(size).fold(0.0, larger);
-    let degree = if is_short { 1 } else { (degree - 1).max(1) };
+    let [total, all] = ends[ends.len() - 1];
+    let number = (all + ROUND_OFF).floor();
+    let end_of = |part: usize| {
+        let place = part as f64 / number * all;
+        let next = ends.partition_point(|end| end[1] < place).clamp(1, ends.len() - 1);
+        let [from, to] = [ends[next - 1], ends[next]];
+        from[0] + (place - from[1]) / (to[1] - from[1]) * (to[0] - from[0])
+    };
+    let knots: Vec<f64> = (1..number as usize).map(end_of).collect();
+    let degree = if number < 1.0 { 1 } else { (degree - 1).max(1) };
     SplineSpace::new(degree, &[vec![0.0; degree + 1], knots, vec![total; degree + 1]].concat())
 }
 

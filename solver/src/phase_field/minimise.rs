@@ -207,7 +207,9 @@ impl PhaseField {
         let candidates = &equation.awake.candidates[..];
         let found: Vec<f64> = candidates.iter().map(|&at| self.phase[at]).collect();
         let convex = equation.linearised.as_ref().map(|linearised| linearised.convex);
-        let furthest = from.iter().zip(&found).map(|(from, found)| (found - from).abs()).fold(0.0, larger);
+        let bounded = |at: usize, c: f64| larger(smaller(c, self.previous[at]), 0.0);
+        let changes = candidates.iter().zip(from.iter().zip(&found));
+        let furthest = changes.map(|(&at, (from, found))| (bounded(at, *found) - from).abs()).fold(0.0, larger);
         let whole = if convex.is_some() { smaller(1.0, MOST_CHANGE / furthest) } else { 1.0 };
         for halvings in 0..MOST_HALVINGS {
             let part = whole * 0.5_f64.powi(halvings as i32);

@@ -102,13 +102,15 @@ impl Regions {
             let spans = frames[level].patch.spaces.each_ref().map(|space| space.spans().len());
             for (frame, halvings) in frames[level..].iter().zip(0..) {
                 let Some(fracture) = &frame.fracture else { continue };
-                let (grid, half) = (frame.lattice.patch_grid, frame.lattice.degree.map(|p| p / 2));
+                let (grid, degree) = (frame.lattice.patch_grid, frame.lattice.degree);
                 let phase = fracture.field.control_values();
                 for at in fracture.field.taking_part().flatten().filter(|&at| phase[at] < REFINED_BELOW) {
                     let place = [grid.column_of(at), grid.row_of(at)];
                     let around = [0, 1].map(|d| {
-                        let span = place[d].saturating_sub(half[d]) >> halvings;
-                        span.saturating_sub(MARGIN)..(span + MARGIN + 1).min(spans[d])
+                        // The span in the middle of its support, or two.
+                        let [first, last] = [degree[d].div_ceil(2), degree[d] / 2]
+                            .map(|half| (place[d].saturating_sub(half) >> halvings).min(spans[d] - 1));
+                        first.saturating_sub(MARGIN)..(last + MARGIN + 1).min(spans[d])
                     });
                     any |= self.mark(level, around);
                 }
