@@ -107,7 +107,8 @@ impl Point {
     pub(crate) fn at_rest(position: [f64; 2], [width, height]: [f64; 2]) -> Self {
         let [velocity, displacement, offset] = [[0.0; 2]; 3];
         let (strain, stress) = ([0.0; 3], [0.0; 3]);
-        let (volume, aspect, half_width) = (width * height, width / height, [0.5 * width, 0.5 * height]);
+        let aspect = fault!("domain-of-equal-sides", width / height => 1.0);
+        let (volume, half_width) = (width * height, [0.5 * width, 0.5 * height]);
         Self { position, velocity, displacement, strain, stress, volume, aspect, half_width, offset }
     }
 
