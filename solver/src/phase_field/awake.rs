@@ -28,6 +28,10 @@ pub(crate) struct Awake {
     /// Control points whose value may change, in order, and as marks.
     pub(super) candidates: Vec<usize>,
     is_candidate: Vec<bool>,
+    /// Cells whose energy may reach the threshold soon.
+    driven: Vec<bool>,
+    /// Control points whose value may change at all, unless all may.
+    allowed: Option<Vec<bool>>,
 }
 
 impl Awake {
@@ -45,12 +49,33 @@ impl Awake {
             damaged: vec![true; cells],
             candidates: Vec::new(),
             is_candidate: vec![false; control_points],
+            driven: vec![false; cells],
+            allowed: None,
         }
+    }
+
+    /// Lets these control points alone change. If there are none, nothing is computed.
+    pub(super) fn allow(&mut self, allowed: Vec<bool>) {
+        if !allowed.contains(&true) {
+            self.sleep();
+            self.everything = false;
+        }
+        self.allowed = Some(allowed);
+    }
+
+    /// Cells whose energy may reach the threshold soon.
+    pub(crate) fn driven(&self) -> &[bool] {
+        &self.driven
     }
 
     /// Chooses the cells to compute: tiles where a cell is `driven` or c below 1, and those around them.
     /// Spans that a boundary or a slit cuts are always computed.
-    pub(crate) fn choose(&mut self, lattice: &Lattice, driven: &[bool], phase: &[f64]) {
+    pub(crate) fn choose(&mut self, lattice: &Lattice, driven: Vec<bool>, phase: &[f64]) {
+        self.driven = driven;
+        if self.allowed.as_ref().is_some_and(|allowed| !allowed.contains(&true)) {
+            return self.computed.fill(false);
+        }
+        let driven = &self.driven;
         let tiles = lattice.tiles.len();
         let tables = lattice.patch_strips();
         let mut near = vec![false; tables * tiles];
@@ -126,7 +151,9 @@ impl Awake {
         if more {
             let near = |cell: usize| lattice.functions_of_cell(cell).any(|row| is_candidate[row].contains(&true));
             self.assembled = self.computed.iter().enumerate().map(|(cell, computed)| *computed && near(cell)).collect();
-            self.candidates = lattice.patch_grid.indices().filter(|&at| is_candidate[at]).collect();
+            let is_allowed = |at: usize| self.allowed.as_ref().is_none_or(|allowed| allowed[at]);
+            let candidates = lattice.patch_grid.indices().filter(|&at| is_candidate[at] && is_allowed(at));
+            self.candidates = candidates.collect();
             self.is_candidate = is_candidate;
             self.spread_over_tiles(lattice);
         }
@@ -149,7 +176,7 @@ impl Awake {
 
     /// Heap memory, bytes.
     pub(super) fn bytes(&self) -> usize {
-        8 * (self.candidates.len() + self.threshold.len()) + 3 * self.computed.len() + self.is_candidate.len()
+        8 * (self.candidates.len() + self.threshold.len()) + 4 * self.computed.len() + 2 * self.is_candidate.len()
     }
 }
 

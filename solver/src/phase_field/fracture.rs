@@ -95,9 +95,14 @@ impl LatticeFracture {
         let convergence = field.initialise(lattice, &history)?;
         let iterations = convergence.iterations;
         let lag_work = field.skips_solves().then(|| LagWork::new(lattice.batches()));
-        let (phase, excess) = (zeros.clone(), zeros);
+        let (phase, excess) = (vec![Lane::splat(1.0); lattice.batches()], zeros);
         let driven = body.cracks.iter().filter(|crack| matches!(crack.kind, CrackKind::Driven(_))).cloned().collect();
         Ok(Self { model, history, phase, excess, lag_work, field, relative, iterations, driven, intact_energy: None })
+    }
+
+    /// Whether the model has a threshold, below which material is intact.
+    pub(crate) fn has_threshold(&self) -> bool {
+        self.model.threshold().is_some()
     }
 
     /// H from the present displacement, or from cracks that are driven, at a time, s; with a threshold also
@@ -135,7 +140,7 @@ impl LatticeFracture {
             sweep_with(kinematics, lattice, fields, &mut kernels, Some(forces));
             self.intact_energy = Some(kernels.iter().map(|k| k.energy.sum()).sum());
             let before = awake.computed().to_vec();
-            awake.choose(lattice, &reached, phase);
+            awake.choose(lattice, reached, phase);
             let left = before.iter().zip(awake.computed()).map(|(before, now)| *before && !now);
             let left = self.history.chunks_mut(span).zip(left).filter(|(_, left)| *left);
             left.for_each(|(drive, _)| drive.fill(Lane::ZERO)); // below the level, and not known

@@ -76,6 +76,19 @@ impl PhaseField {
         self.bounds.as_mut().map(|bounds| (&mut bounds.awake, &self.phase[..]))
     }
 
+    /// Lets the values of these control points alone change, if the model has a threshold.
+    pub(crate) fn allow(&mut self, allowed: Vec<bool>) {
+        if let Some(bounds) = &mut self.bounds {
+            bounds.awake.allow(allowed);
+        }
+    }
+
+    /// Makes a body with a threshold intact, for good.
+    pub(crate) fn rest(&mut self) {
+        self.matrix.grid.indices().for_each(|at| (self.phase[at], self.previous[at]) = (1.0, 1.0));
+        self.allow(vec![false; self.phase.len()]);
+    }
+
     /// Makes everything take part in the coming solve.
     pub(crate) fn wake_everything(&mut self) {
         if let Some(bounds) = &mut self.bounds {

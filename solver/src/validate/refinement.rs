@@ -2,7 +2,7 @@
 
 use super::findings::Findings;
 use crate::particles::spans::longest_span;
-use crate::scene::{CrackModel, Frame, Kinematics, Mass, PhaseFieldSolver, Scene, Shape};
+use crate::scene::{Frame, Kinematics, Mass, PhaseFieldSolver, Scene, Shape};
 
 /// Relative tolerance of "covers the mesh".
 const TOLERANCE: f64 = crate::splines::spline::ROUND_OFF;
@@ -35,7 +35,6 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
         ),
         (body.is_some_and(|body| !covers(&body.shape)), "a body that does not cover the mesh", "let it cover the mesh"),
         (fracture.is_none(), "a body that does not break", "give its material a fracture table"),
-        (fracture.is_some_and(|f| f.model != CrackModel::At2), "another model than at2", "use model = \"at2\""),
         (scene.equilibrium, "a static start", "remove start.equilibrium"),
         ((0..2).any(repeats), "repeated knots", "give every inner knot once"),
         (
@@ -55,7 +54,8 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
     }
     if let (Some(body), Some(fracture)) = (body, fracture) {
         let (coarse, l0) = (longest_span(&scene.mesh, &body.shape), fracture.shortest_length());
-        let begins_anywhere = body.cracks.is_empty() || fracture.random.is_some();
+        // With a threshold, spans are halved before a crack begins.
+        let begins_anywhere = !fracture.model.has_threshold() && (body.cracks.is_empty() || fracture.random.is_some());
         if begins_anywhere && scene.mesh.geometry.is_none() && coarse > l0 * (1.0 + TOLERANCE) {
             let message = format!(
                 "a crack may begin where cells are {:.4} mm long against l0 = {:.4} mm: they are halved when it is there, \

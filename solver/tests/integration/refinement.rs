@@ -1,6 +1,6 @@
 //! Local refinement: levels of truncated hierarchical splines that follow the crack.
 
-use crate::common::{brittle, elastic_scene, run};
+use crate::common::{brittle, elastic_scene, make_cohesive, run};
 use fisura::Simulation;
 use fisura::linear_algebra::extremes::larger;
 use fisura::scene::*;
@@ -19,11 +19,23 @@ pub fn refined(degree: usize, cells: [usize; 2], halvings: usize) -> Scene {
     scene
 }
 
+/// The same with AT2, AT1 or PF-CZM.
+fn of_model(model: usize, mut scene: Scene) -> Scene {
+    match model {
+        1 => scene.materials.get_mut("glass").unwrap().fracture.as_mut().unwrap().model = CrackModel::At1,
+        2 => make_cohesive(&mut scene, 7.5e6, Softening::Linear, Split::Rankine),
+        _ => {}
+    }
+    scene
+}
+
 /// Where every tile is refined from the start, the run is that on the finest mesh.
 #[test]
 fn refined_everywhere_it_is_the_finest_mesh() {
-    for (degree, tensor) in [(1, [1.0, 0.0]), (2, [1.0, 0.0]), (2, [4.0, 0.5]), (3, [1.0, 0.0])] {
-        let mut coarse = refined(degree, [16, 8], 1);
+    let models = [(1, [1.0, 0.0], 0), (2, [1.0, 0.0], 0), (2, [4.0, 0.5], 0), (3, [1.0, 0.0], 0)];
+    let with_threshold = [(2, [1.0, 0.0], 1), (3, [4.0, 0.5], 1), (2, [1.0, 0.0], 2)];
+    for (degree, tensor, model) in models.into_iter().chain(with_threshold) {
+        let mut coarse = of_model(model, refined(degree, [16, 8], 1));
         coarse.bodies[0].cracks[0].points[1] = [0.009, 0.004];
         let [along, mixed] = tensor;
         let anisotropy = Anisotropy { tensor: [[along, mixed], [mixed, 1.0]], angle: 0.4 };
@@ -90,8 +102,8 @@ fn the_ledger_closes_beside_a_held_side() {
 /// A crack that runs into coarse cells refines them; momentum is kept, and the ledger has the energy.
 #[test]
 fn what_refinement_changes_is_a_term_of_the_ledger() {
-    for (degree, halvings) in [(2, 1), (3, 1), (2, 2)] {
-        let mut scene = refined(degree, [64, 32], halvings);
+    for (degree, halvings, model) in [(2, 1, 0), (3, 1, 0), (2, 2, 0), (2, 1, 1), (3, 2, 1), (2, 1, 2)] {
+        let mut scene = of_model(model, refined(degree, [64, 32], halvings));
         scene.bodies[0].velocity = [3.0, 1.0];
         let (simulation, samples) = run(&scene);
         let (first, last) = (&samples[0], samples.last().unwrap());

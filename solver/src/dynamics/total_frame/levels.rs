@@ -9,7 +9,8 @@
 //! the coarser one, `f_c += Rᵀ f_f`. So the functions sum to one, and the lumped mass is positive.
 //!
 //! What is refined stays so. Tiles of spans are refined where c falls below 0.75, and around
-//! (`levels/regions.rs`). Fields are copied, so that they do not change and momentum is kept. The change of
+//! (`levels/regions.rs`). The phase field of a model with a threshold is on the finest level alone, and 1
+//! elsewhere. Tiles are then refined where c is below 1, and where the energy nears the threshold. Fields are copied, so that they do not change and momentum is kept. The change of
 //! the energies, which comes from the lumped mass, the new points and c there, is a term of the ledger. The
 //! critical step is that of the finest level over the whole mesh: the functions in use are combinations of
 //! its own, and the lumped mass is convex.
@@ -83,7 +84,13 @@ impl Levels {
                 of_level.bodies[0].cracks.retain(|crack| !crack.is_slit()); // they lie in the finest level
             }
             let strip_rows = if level < finest { ROWS } else { STRIP_ROWS };
-            frames.push(TotalFrame::in_strips(&of_level, strip_rows)?);
+            let mut frame = TotalFrame::in_strips(&of_level, strip_rows)?;
+            if level < finest
+                && let Some(fracture) = frame.fracture.as_mut().filter(|fracture| fracture.has_threshold())
+            {
+                fracture.field.rest();
+            }
+            frames.push(frame);
             mesh = mesh.halved();
         }
         let insertion = |pair: &[TotalFrame]| {
@@ -230,7 +237,10 @@ impl Levels {
     /// # Errors
     /// If they cannot be solved for.
     fn advance_phase_fields(&mut self, frames: &mut [TotalFrame]) -> Result<(), SolveFailure> {
-        let Some(mut fields) = self.phase_fields(frames) else { return Ok(()) };
+        let Some(mut fields) = self.phase_fields(frames) else {
+            let finest = frames.last_mut().and_then(|frame| Some((&frame.lattice, frame.fracture.as_mut()?)));
+            return finest.map_or(Ok(()), |(lattice, fracture)| fracture.advance_phase_field(lattice));
+        };
         let found = fields.advance()?;
         if let (Some(found), Some(fracture)) = (found, &mut frames[0].fracture) {
             fracture.iterations = found.iterations;
@@ -259,10 +269,13 @@ impl Levels {
         }
     }
 
+    /// The phase fields, which are solved for together. One with a threshold is on the finest level alone: it
+    /// is 1 elsewhere.
     fn phase_fields<'a>(&'a mut self, frames: &'a mut [TotalFrame]) -> Option<PhaseFieldLevels<'a>> {
         let levels = frames.iter_mut().zip(&self.own).zip(&mut self.phase_loads).map(|((frame, own), load)| {
             let TotalFrame { lattice, fracture, .. } = frame;
-            let LatticeFracture { field, history, relative, .. } = fracture.as_mut()?;
+            let LatticeFracture { field, history, relative, .. } =
+                fracture.as_mut().filter(|fracture| !fracture.has_threshold())?;
             Some(OnLevel { field, lattice, history, own, load, relative: relative.as_deref() })
         });
         Some(PhaseFieldLevels { levels: levels.collect::<Option<_>>()?, interfaces: &self.interfaces })
@@ -317,6 +330,11 @@ impl Levels {
             for at in grid.indices().filter(|&at| functions.covered[at]) {
                 frame.velocity.iter_mut().for_each(|component| component[at] = 0.0);
             }
+        }
+        if let (Some(fracture), Some(functions)) =
+            (frames.last_mut().and_then(|f| f.fracture.as_mut()), functions.last())
+        {
+            fracture.field.allow((0..functions.whole.len()).map(|at| functions.is_own(at)).collect());
         }
         self.functions = functions;
         if let Some(mut fields) = self.phase_fields(frames) {

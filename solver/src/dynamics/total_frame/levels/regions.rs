@@ -10,6 +10,8 @@ use crate::scene::Crack;
 
 /// Phase field below which the mesh is refined: the stress of AT2 under a uniform strain is largest there.
 const REFINED_BELOW: f64 = 0.75;
+/// The same of a model with a threshold, whose crack ends where c is 1.
+const INTACT: f64 = 0.99;
 /// Spans of the coarser level around what is refined that are refined with it. With two, three levels took 1
 /// to 2 % too little work in the benchmark of the plate; with four and eight they did not.
 const MARGIN: usize = 4;
@@ -100,11 +102,13 @@ impl Regions {
         let mut any = false;
         for level in 0..self.columns.len() {
             let spans = frames[level].patch.spaces.each_ref().map(|space| space.spans().len());
+            any |= self.mark_driven(level, &frames[level], spans);
             for (frame, halvings) in frames[level..].iter().zip(0..) {
                 let Some(fracture) = &frame.fracture else { continue };
                 let (grid, degree) = (frame.lattice.patch_grid, frame.lattice.degree);
                 let phase = fracture.field.control_values();
-                for at in fracture.field.taking_part().flatten().filter(|&at| phase[at] < REFINED_BELOW) {
+                let below = if fracture.has_threshold() { INTACT } else { REFINED_BELOW };
+                for at in fracture.field.taking_part().flatten().filter(|&at| phase[at] < below) {
                     let place = [grid.column_of(at), grid.row_of(at)];
                     let around = [0, 1].map(|d| {
                         // The span in the middle of its support, or two.
@@ -117,6 +121,17 @@ impl Regions {
             }
         }
         any
+    }
+
+    /// Refines the tiles where the energy nears the threshold of a model that has one, and a span beside them.
+    fn mark_driven(&mut self, level: usize, frame: &TotalFrame, spans: [usize; 2]) -> bool {
+        let lattice = &frame.lattice;
+        let awake = frame.fracture.as_ref().and_then(|fracture| fracture.field.awake());
+        let cells = awake.map_or(&[][..], |awake| awake.driven()).iter().enumerate().filter(|(_, driven)| **driven);
+        let places = cells.map(|(cell, _)| [cell % lattice.tiles.len() * LANES, cell / lattice.tiles.len()]);
+        let around = |place: usize, size: usize, d: usize| place.saturating_sub(1)..(place + size + 1).min(spans[d]);
+        let ranges: Vec<_> = places.map(|[i, j]| [around(i, LANES, 0), around(j, 1, 1)]).collect();
+        ranges.into_iter().fold(false, |any, ranges| self.mark(level, ranges) | any)
     }
 
     /// Refines the tiles of some spans of a level, and those of coarser levels that they lie in; whether
