@@ -51,34 +51,23 @@ const DRAWN: usize = 2000;
 const SMALL: f64 = 2.649_825_291_116_8e-169; // 2^-560
 const STEPS: usize = 400;
 
-pub(in super::super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> crate::study::Offered {
-    let mut offers = crate::study::Offers::default();
-    for (name, _) in FAMILIES {
-        offers.held(name, ["tensile strain, largest error over the strain"]);
-    }
-    offers.held("stretches from 1e-12 to 1000", ["Hencky strain, largest error"]);
-    offers.held("run", ["velocities at strains 3e-169 times as large, largest difference after scaling"]);
-    Ok(offers)
-}
-
-pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
-    let mut findings = Findings::default();
+pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene], findings: &mut Findings) -> Result<(), StudyError> {
     for (name, draw) in FAMILIES {
-        let mut random = Random::scrambled(7);
-        let mut worst = 0.0_f64;
-        for _ in 0..DRAWN {
-            let principal = draw(&mut random);
-            worst = larger(worst, error(principal, TAU * random.unit()));
-        }
-        findings.add(
-            name,
-            "tensile strain, largest error over the strain",
-            worst,
-            exact(0.0, "from principal strains"),
-        );
+        let quantity = ("tensile strain, largest error over the strain", exact(0.0, "from principal strains"));
+        findings.measure(name, [quantity], || {
+            let mut random = Random::scrambled(7);
+            let mut worst = 0.0_f64;
+            for _ in 0..DRAWN {
+                let principal = draw(&mut random);
+                worst = larger(worst, error(principal, TAU * random.unit()));
+            }
+            Ok([worst])
+        })?;
     }
-    findings.add("stretches from 1e-12 to 1000", "Hencky strain, largest error", hencky_error(), exact(0.0, "ln λ"));
-    let (table, difference) = scaled_runs()?;
+    let quantity = ("Hencky strain, largest error", exact(0.0, "ln λ"));
+    findings.measure("stretches from 1e-12 to 1000", [quantity], || Ok([hencky_error()]))?;
+    let found = findings.compute(scaled_runs)?;
+    let (table, difference) = found.map_or((Table::default(), None), |(table, difference)| (table, Some(difference)));
     let quantity = "velocities at strains 3e-169 times as large, largest difference after scaling";
     findings.add("run", quantity, difference, exact(0.0, "homogeneous of degree one"));
     let stem = series_stem(case, "scaled");
@@ -95,7 +84,7 @@ pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Find
         curves.into(),
     ));
     findings.series.push((stem, table));
-    Ok(findings)
+    Ok(())
 }
 
 /// Largest component of the error of the tensile part over the larger principal strain.

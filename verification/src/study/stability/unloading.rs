@@ -22,37 +22,31 @@ use crate::study::{Case, CaseScene, Findings, StudyError, exact};
 const LENGTH: f64 = 2.0;
 const HEIGHT: f64 = 0.5;
 
-pub(in super::super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> crate::study::Offered {
-    let mut offers = crate::study::Offers::default();
-    for name in ["total", "updated"] {
-        offers.held(name, ["largest fall of the history of a point in a step over the largest history"]);
-        offers.bare(name, ["peaks of the elastic energy"]);
-    }
-    Ok(offers)
-}
-
-pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
-    let mut findings = Findings::default();
-    let mut curves = Vec::new();
+pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene], findings: &mut Findings) -> Result<(), StudyError> {
+    let (mut curves, mut series) = (Vec::new(), Vec::new());
     for (name, frame) in [("total", Frame::Total), ("updated", Frame::Updated)] {
-        let Vibration { table, fall, largest } = vibrate(frame)?;
-        findings.add(
-            name,
-            "largest fall of the history of a point in a step over the largest history",
-            fall / largest,
-            exact(0.0, "a maximum over time"),
-        );
-        let turns = table.columns[2].windows(3).filter(|e| e[1] > e[0] && e[1] > e[2]).count();
-        findings.add(name, "peaks of the elastic energy", turns as f64, None);
         let stem = series_stem(case, name);
         for (label, column) in [("Σ V H", "history_j_per_m"), ("elastic energy", "elastic_j_per_m")] {
             curves.push(curve(&format!("{name}, {label}"), &stem, ["time_s", column], CurveStyle::Line));
         }
-        findings.series.push((stem, table));
+        let quantities = [
+            (
+                "largest fall of the history of a point in a step over the largest history",
+                exact(0.0, "a maximum over time"),
+            ),
+            ("peaks of the elastic energy", None),
+        ];
+        findings.measure(name, quantities, || {
+            let Vibration { table, fall, largest } = vibrate(frame)?;
+            let turns = table.columns[2].windows(3).filter(|e| e[1] > e[0] && e[1] > e[2]).count();
+            series.push((stem, table));
+            Ok([fall / largest, turns as f64])
+        })?;
     }
+    findings.series.extend(series);
     let axes = ["time (s)", "energy (J/m)"];
     findings.figures.push(chart(case, "history", "History field of a vibrating body", "", axes, curves));
-    Ok(findings)
+    Ok(())
 }
 
 /// What is seen of a vibrating body.
