@@ -7,7 +7,7 @@
 
 use std::collections::BTreeMap;
 
-use fisura::scene::{Material, Mesh, Scene};
+use fisura::scene::{Mesh, Scene};
 
 use super::{Findings, StudyError, exact, other};
 use crate::case::expand::CaseScene;
@@ -214,6 +214,6 @@ fn known_measures(case: &Case) -> Result<[(f64, f64); 8], StudyError> {
 
 /// Any scene: the measures above do not look at it.
 fn scene() -> Scene {
-    let material = Material { young_modulus: 1.0, poisson_ratio: 0.0, density: 1.0, fracture: None };
-    PlainScene::free(Mesh::uniform([1; 2], [0.0; 2], [1.0; 2], [1; 2]), material, 1).scene()
+    let mesh = Mesh::uniform([1; 2], [0.0; 2], [1.0; 2], [1; 2]);
+    PlainScene { points: 1, ..PlainScene::unit(mesh, 0.0) }.scene()
 }

@@ -6,7 +6,7 @@
 //! that overlap at t = 0 have to be refused.
 
 use fisura::Simulation;
-use fisura::scene::{Body, Contact, Frame, Layout, Material, Mesh, Scene, Shape, TimeStep, Transfer};
+use fisura::scene::{Body, Contact, Frame, Layout, Mesh, Scene, Shape, TimeStep, Transfer};
 use fisura::validate::validate;
 
 use crate::extremes::{larger, largest};
@@ -48,15 +48,8 @@ pub(in super::super) fn study(_case: &Case, _scenes: &[CaseScene], findings: &mu
 
 /// A block whose points stand a quarter of a span from knots at t = 0, and fly at unit speed.
 fn flying(degree: usize, transfer: Transfer) -> Scene {
-    let mut scene = PlainScene {
-        layout: Layout::Uniform,
-        ..PlainScene::free(
-            Mesh::uniform([degree; 2], [0.0; 2], [SPANS as f64, 4.0], [SPANS, 4]),
-            Material { young_modulus: 1.0, poisson_ratio: 0.25, density: 1.0, fracture: None },
-            2,
-        )
-    }
-    .scene();
+    let mesh = Mesh::uniform([degree; 2], [0.0; 2], [SPANS as f64, 4.0], [SPANS, 4]);
+    let mut scene = PlainScene { layout: Layout::Uniform, points: 2, ..PlainScene::unit(mesh, 0.25) }.scene();
     scene.analysis.frame = Frame::Updated;
     scene.analysis.transfer = transfer;
     scene.analysis.time_step = TimeStep::Fixed(STEP);

@@ -6,7 +6,7 @@
 //! = 1 and not for p ≥ 2; with the consistent mass `η^(2p−1)/η^(2p+1)`, so that it falls as η.
 
 use fisura::dynamics::updated_frame::UpdatedFrame;
-use fisura::scene::{Analysis, Frame, Mass, Material, Mesh, Scene, Shape, Side};
+use fisura::scene::{Analysis, Frame, Mass, Mesh, Scene, Shape, Side};
 
 use super::{logarithmic, total_frame};
 use crate::output::history::Table;
@@ -130,14 +130,8 @@ fn bars(case: &Case, findings: &mut Findings) -> Result<(), StudyError> {
     }
     let caption = "A bar held at one end, whose free end cuts a span; 2/ω of dense eigenvalues. Where the curve of p = 3 jumps, the mass of the last control point is below 1e-17 of the largest and no longer counts.";
     let axes = ["cut part of the span", "c dt/h"];
-    findings.figures.push(logarithmic(
-        case,
-        "cut",
-        "Critical step against the cut part of a span",
-        caption,
-        axes,
-        curves,
-    ));
+    let title = "Critical step against the cut part of a span";
+    findings.figures.push(logarithmic(case, "cut", title, caption, axes, curves));
     findings.series.push((stem, table));
     Ok(())
 }
@@ -161,15 +155,8 @@ fn bar_step(degree: usize, mass: Mass, cut: f64) -> Result<f64, StudyError> {
 
 /// A free square of 6 spans a side; `cut` of the last span in each direction belongs to it.
 fn patch(degree: usize, mass: Mass, cut: f64) -> Scene {
-    let plain = PlainScene {
-        mass,
-        ..PlainScene::free(
-            Mesh::uniform([degree; 2], [0.0; 2], [6.0; 2], [6; 2]),
-            Material { young_modulus: 1.0, poisson_ratio: 0.3, density: 1.0, fracture: None },
-            degree + 1,
-        )
-    };
-    let mut scene = plain.scene();
+    let mesh = Mesh::uniform([degree; 2], [0.0; 2], [6.0; 2], [6; 2]);
+    let mut scene = PlainScene { mass, ..PlainScene::unit(mesh, 0.3) }.scene();
     scene.bodies[0].shape = Shape::Rectangle { min: [0.0; 2], max: [5.0 + cut; 2] };
     scene
 }

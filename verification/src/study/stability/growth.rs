@@ -6,7 +6,7 @@
 //! elastic energy by `1/(1 − (ω dt/2)²)` of it.
 
 use fisura::Simulation;
-use fisura::scene::{Boundary, Material, Mesh, Scene, Shape, Side, TimeStep};
+use fisura::scene::{Boundary, Mesh, Scene, Shape, Side, TimeStep};
 
 use super::total_frame;
 use crate::extremes::larger;
@@ -78,12 +78,8 @@ pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene], findings: &mut
 
 /// A square of 4.25 spans a side, held at its left side, in motion.
 fn cut_block(degree: usize) -> Scene {
-    let mut scene = PlainScene::free(
-        Mesh::uniform([degree; 2], [0.0; 2], [5.0; 2], [5; 2]),
-        Material { young_modulus: 1.0, poisson_ratio: 0.3, density: 1.0, fracture: None },
-        degree + 1,
-    )
-    .scene();
+    let mesh = Mesh::uniform([degree; 2], [0.0; 2], [5.0; 2], [5; 2]);
+    let mut scene = PlainScene::unit(mesh, 0.3).scene();
     scene.bodies[0].shape = Shape::Rectangle { min: [0.0; 2], max: [4.25; 2] };
     scene.bodies[0].velocity = [1e-3, 3e-4];
     scene.boundaries = vec![Boundary::fixed(Side::Left, [true; 2])];

@@ -6,7 +6,7 @@
 //! 0.4999 is held to its ledger.
 
 use fisura::Simulation;
-use fisura::scene::{Boundary, Material, Mesh, Scene, Side, TimeStep};
+use fisura::scene::{Boundary, Mesh, Scene, Side, TimeStep};
 
 use super::{logarithmic, total_frame};
 use crate::extremes::larger;
@@ -67,12 +67,8 @@ pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene], findings: &mut
 
 /// A unit square of unit modulus and density held at its bottom.
 fn square(degree: usize, spans: usize, nu: f64) -> Scene {
-    let mut scene = PlainScene::free(
-        Mesh::uniform([degree; 2], [0.0; 2], [1.0; 2], [spans; 2]),
-        Material { young_modulus: 1.0, poisson_ratio: nu, density: 1.0, fracture: None },
-        degree + 1,
-    )
-    .scene();
+    let mesh = Mesh::uniform([degree; 2], [0.0; 2], [1.0; 2], [spans; 2]);
+    let mut scene = PlainScene::unit(mesh, nu).scene();
     scene.boundaries = vec![Boundary::fixed(Side::Bottom, [true; 2])];
     scene
 }

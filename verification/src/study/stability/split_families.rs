@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 use fisura::linear_algebra::lane::Lane;
 use fisura::material::hencky::hencky_strain;
 use fisura::material::split::tensile_strain;
-use fisura::scene::{Boundary, Fracture, Material, Mesh, Scene, Side};
+use fisura::scene::{Boundary, Fracture, Mesh, Scene, Side};
 
 use super::{logarithmic, total_frame};
 use crate::extremes::{larger, largest};
@@ -75,14 +75,8 @@ pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene], findings: &mut
     let curves = curves.map(|(label, column)| curve(label, &stem, ["step", column], CurveStyle::Line));
     let caption = "A block held at its left side and set in motion: largest velocity, spectral split.";
     let axes = ["step", "largest velocity over that at t = 0"];
-    findings.figures.push(logarithmic(
-        case,
-        "scaled",
-        "The same motion, small and smaller",
-        caption,
-        axes,
-        curves.into(),
-    ));
+    let title = "The same motion, small and smaller";
+    findings.figures.push(logarithmic(case, "scaled", title, caption, axes, curves.into()));
     findings.series.push((stem, table));
     Ok(())
 }
@@ -144,13 +138,9 @@ fn scaled_runs() -> Result<(Table, f64), StudyError> {
 /// A block held at its left side whose speed strains it by about `size` times 1e-3; it is far too tough to
 /// crack.
 fn block(size: f64) -> Scene {
-    let fracture = Fracture::at2(1e12, 0.25);
-    let mut scene = PlainScene::free(
-        Mesh::uniform([2; 2], [0.0; 2], [2.0, 1.0], [8, 4]),
-        Material { young_modulus: 1.0, poisson_ratio: 0.3, density: 1.0, fracture: Some(fracture) },
-        3,
-    )
-    .scene();
+    let mut plain = PlainScene::unit(Mesh::uniform([2; 2], [0.0; 2], [2.0, 1.0], [8, 4]), 0.3);
+    plain.material.fracture = Some(Fracture::at2(1e12, 0.25));
+    let mut scene = plain.scene();
     scene.bodies[0].velocity = [1e-3 * size, 3e-4 * size];
     scene.boundaries = vec![Boundary::fixed(Side::Left, [true; 2])];
     scene

@@ -8,7 +8,7 @@
 use std::collections::BTreeMap;
 
 use fisura::Simulation;
-use fisura::scene::{Boundary, Fracture, Frame, Material, Mesh, Scene, Shape, Side};
+use fisura::scene::{Boundary, Fracture, Frame, Mesh, Scene, Shape, Side};
 
 use crate::extremes::{larger, largest};
 use crate::output::history::Table;
@@ -98,13 +98,10 @@ fn largest_fall(before: &Histories, now: &Histories) -> f64 {
 
 /// A bar held at its left side and set in motion along x; strained to about a tenth of its strength.
 fn bar(frame: Frame) -> Scene {
-    let fracture = Fracture::at2(1e-2, 0.25);
-    let mut scene = PlainScene::free(
-        Mesh::uniform([2; 2], [0.0; 2], [2.5, HEIGHT], [20, 4]),
-        Material { young_modulus: 1.0, poisson_ratio: 0.2, density: 1.0, fracture: Some(fracture) },
-        2,
-    )
-    .scene();
+    let mesh = Mesh::uniform([2; 2], [0.0; 2], [2.5, HEIGHT], [20, 4]);
+    let mut plain = PlainScene { points: 2, ..PlainScene::unit(mesh, 0.2) };
+    plain.material.fracture = Some(Fracture::at2(1e-2, 0.25));
+    let mut scene = plain.scene();
     scene.analysis.frame = frame;
     scene.analysis.end_time = 40.0;
     scene.bodies[0].shape = Shape::Rectangle { min: [0.0; 2], max: [LENGTH, HEIGHT] };
