@@ -286,33 +286,27 @@ mod tests {
 
     #[test]
     fn variants_of_a_list_share_what_stands_beside_it() {
-        let text = format!(
-            "[[variant]]\nenergy_factor = 2\neach = [{{ name = \"a\", set = {{}} }}, {{ name = \"b\", set = {{}}, energy_factor = 1 }}]\n[[variant]]\nname = \"c\"\nset = {{}}\n{CHECK}"
-        );
+        let each = "[{ name = \"a\", set = {} }, { name = \"b\", set = {}, energy_factor = 1 }]";
+        let variants =
+            format!("[[variant]]\nenergy_factor = 2\neach = {each}\n[[variant]]\nname = \"c\"\nset = {{}}\n");
+        let text = format!("{variants}{CHECK}");
         let case = read(&text, SETS, BASES).unwrap();
         let found: Vec<_> = case.variants.iter().map(|v| (v.name.as_str(), v.energy_factor)).collect();
         assert_eq!(found, [("a", Some(2.0)), ("b", Some(1.0)), ("c", None)]);
     }
 
     #[test]
-    fn a_case_stands_over_its_base_and_an_override_over_both() {
-        let text = format!("base = \"bar\"\n[scene]\nmesh.degree = 3\nbody.1.name = \"end\"\n{CHECK}");
-        let case = read(&text, SETS, BASES).unwrap();
-        assert_eq!((case.label.as_str(), case.document.root.get("base")), ("bar", None));
-        let scene = case.scene_node().unwrap().canonical();
-        let bodies = r#"[{name = String("one")}, {frozen = Boolean(true), name = String("end")}]"#;
-        let mesh = "{cells = [Integer(3), Integer(4)], degree = Integer(3)}";
-        assert_eq!(scene, format!("{{body = {bodies}, mesh = {mesh}}}"));
-    }
-
-    #[test]
-    fn a_base_stands_over_its_own() {
-        let bases = format!("{BASES}[end]\nbase = \"bar\"\nlabel = \"end\"\n[end.scene]\nbody.1.name = \"end\"\n");
-        let case = read(&format!("base = \"end\"\n{CHECK}"), SETS, &bases).unwrap();
-        assert_eq!((case.label.as_str(), case.document.root.get("base")), ("end", None));
-        let names = ["scene.body.0.name", "scene.body.1.name"];
-        let names = names.map(|key| case.document.root.at(key).and_then(super::Node::as_str));
-        assert_eq!(names, [Some("one"), Some("end")]);
+    fn a_case_stands_over_its_base_and_those_of_it_and_an_override_over_all() {
+        let bases = format!("{BASES}[upon]\nbase = \"bar\"\nlabel = \"upon\"\nscene.mesh.degree = 4\n");
+        for base in ["bar", "upon"] {
+            let text = format!("base = \"{base}\"\n[scene]\nmesh.degree = 3\nbody.1.name = \"end\"\n{CHECK}");
+            let case = read(&text, SETS, &bases).unwrap();
+            assert_eq!((case.label.as_str(), case.document.root.get("base")), (base, None));
+            let scene = case.scene_node().unwrap().canonical();
+            let bodies = r#"[{name = String("one")}, {frozen = Boolean(true), name = String("end")}]"#;
+            let mesh = "{cells = [Integer(3), Integer(4)], degree = Integer(3)}";
+            assert_eq!(scene, format!("{{body = {bodies}, mesh = {mesh}}}"));
+        }
     }
 
     #[test]

@@ -26,7 +26,7 @@ pub(in super::super) fn study(_case: &Case, _scenes: &[CaseScene], findings: &mu
             Ok([(one.iter().zip(&other).filter(|(a, b)| a != b).count() + one.len().abs_diff(other.len())) as f64])
         };
         let quantity = ("numbers that differ after a checkpoint", exact(0.0, "the whole state is stored"));
-        findings.measure(name, [quantity], || differing(interrupted(&scene)))?;
+        findings.measure(name, [quantity], || differing(numbers(&scene, true)))?;
         for threads in THREADS {
             let quantity = ("numbers that differ from those of one thread", exact(0.0, "fixed sums"));
             let variant = format!("{name}, {threads} threads");
@@ -73,32 +73,21 @@ fn notched(frame: Frame) -> Scene {
 fn on_threads(threads: usize, scene: &Scene) -> Result<Vec<u64>, StudyError> {
     let pool = watch::pool(threads);
     let pool = pool.map_err(|e| other(format!("{threads} threads cannot be started: {e}")))?;
-    pool.install(|| {
-        let mut simulation = Simulation::new(scene)?;
-        let mut bits = Vec::new();
-        while !simulation.finished() {
-            watch::check()?;
-            bits.extend(next_sample(&mut simulation)?);
-        }
-        Ok(bits)
-    })
+    pool.install(|| numbers(scene, false))
 }
 
-fn next_sample(simulation: &mut Simulation) -> Result<Vec<u64>, StudyError> {
-    let sample = simulation.advance_to_next_sample()?;
-    Ok(sample.named_values().into_iter().map(|(_, value)| value.to_bits()).collect())
-}
-
-/// The same numbers, of a run that is stored at every sample and taken up again.
-fn interrupted(scene: &Scene) -> Result<Vec<u64>, StudyError> {
+/// The same numbers of a run, which may be stored at every sample and taken up again.
+fn numbers(scene: &Scene, interrupted: bool) -> Result<Vec<u64>, StudyError> {
     let mut simulation = Simulation::new(scene)?;
     let mut bits = Vec::new();
     while !simulation.finished() {
         watch::check()?;
-        bits.extend(next_sample(&mut simulation)?);
-        let state = simulation.checkpoint().map_err(other)?;
-        let resumed = Simulation::resume(scene, &state);
-        simulation = resumed.map_err(other)?;
+        let sample = simulation.advance_to_next_sample()?;
+        bits.extend(sample.named_values().into_iter().map(|(_, value)| value.to_bits()));
+        if interrupted {
+            let state = simulation.checkpoint().map_err(other)?;
+            simulation = Simulation::resume(scene, &state).map_err(other)?;
+        }
     }
     Ok(bits)
 }
