@@ -1,6 +1,7 @@
 //! What is written once for several cases, in files beside the folders of the suites: `base` takes the part
 //! of a case in a table of `bases.toml`, `set` takes the checks of a list of `check-sets.toml`. `each` in a
-//! check or a variant lists what differs between several.
+//! check or a variant lists what differs between several; lists in a list are combined, and an entry may
+//! have an `each`, too.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -89,7 +90,8 @@ fn named(shared: &Node, file: &str, name: &Node, key: &str, problems: &mut Vec<P
 }
 
 /// Writes out the variants and the checks of a case at `path` one by one. An entry of `each`, and what stands
-/// beside `set`, goes before what it is added to; `with` of a set says by id what changes in one of its checks.
+/// beside `set`, goes before what it is added to; `with` of a set says by id what changes in one of its
+/// checks.
 ///
 /// # Errors
 /// The file of the sets, if a set is named and the file cannot be read; an unknown set or id; lists that
@@ -186,10 +188,20 @@ impl Expansion {
         checks.iter().flat_map(|check| self.check(path, check, depth + 1)).collect()
     }
 
-    /// A check for each entry of its list, or the check itself.
+    /// A check for each entry of its list, or for each way to take one entry of each of its lists, or the
+    /// check itself.
     fn each(&mut self, path: &str, check: &Node) -> Vec<Node> {
         let Some(each) = check.get("each").cloned() else { return vec![check.clone()] };
         let entries = each.as_array().filter(|entries| !entries.is_empty());
+        if let Some(lists) = entries.filter(|all| all.iter().all(|list| list.as_array().is_some())) {
+            let mut checks = vec![check.clone()];
+            for list in lists {
+                let with = Table::from([("each".to_string(), list.clone())]);
+                checks.iter_mut().for_each(|check| put(check, &with));
+                checks = checks.iter().flat_map(|check| self.each(path, check)).collect();
+            }
+            return checks;
+        }
         let tables = entries.and_then(|all| all.iter().map(Node::as_table).collect::<Option<Vec<_>>>());
         let Some(tables) = tables else {
             let remedy = "write each = [ { variant = \"…\", max = 1 }, … ]".to_string();
@@ -204,7 +216,7 @@ impl Expansion {
             put(&mut one, entry);
             one
         };
-        tables.into_iter().map(one).collect()
+        tables.into_iter().map(one).flat_map(|one| self.each(path, &one)).collect()
     }
 }
 
@@ -282,6 +294,15 @@ mod tests {
         let found: Vec<_> =
             case.checks.iter().map(|c| (c.variant.as_deref().unwrap(), c.accept.why.as_str())).collect();
         assert_eq!(found, [("q", "w"), ("p", "v")]);
+    }
+
+    #[test]
+    fn lists_in_a_list_are_combined_and_entries_may_be_lists() {
+        let text = "[[check]]\nunit = \"m\"\neach = [[{ quantity = \"a\" }, { quantity = \"b\", unit = \"s\" }], \
+                    [{ variant = \"p\" }, { each = [{ variant = \"q\" }, { variant = \"r\" }] }]]\n";
+        let case = read(text, SETS, BASES).unwrap();
+        let found = case.checks.iter().map(|c| format!("{} {} {}", c.id, c.unit, c.variant.as_deref().unwrap()));
+        assert_eq!(found.collect::<Vec<_>>(), ["a m p", "a m q", "a m r", "b s p", "b s q", "b s r"]);
     }
 
     #[test]

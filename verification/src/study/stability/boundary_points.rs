@@ -23,8 +23,8 @@ const STEP: f64 = 0.0625;
 pub(in super::super) fn study(_case: &Case, _scenes: &[CaseScene], findings: &mut Findings) -> Result<(), StudyError> {
     for degree in 1..=3 {
         for (word, transfer) in [("FLIP", Transfer::Flip), ("APIC", Transfer::Apic)] {
-            // The foremost points stand at 2.75 + t: beyond 12 from t = 9.25 + STEP on; those of a step before
-            // are on the edge.
+            // The foremost points stand at 2.75 + t: beyond 12 from t = 9.25 + STEP on; those of a step
+            // before are on the edge.
             let quantities = [
                 ("points that stood on a knot", None),
                 ("change of velocity, and strain, over the speed", exact(0.0, "a rigid translation")),
