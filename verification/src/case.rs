@@ -255,7 +255,7 @@ impl Case {
         let in_scene: Vec<String> = overrides.iter().map(|o| format!("scene.{o}")).collect();
         repeat::add_base(&mut document, path)?;
         document.apply(&in_scene)?;
-        repeat::write_checks(&mut document, path)?;
+        repeat::write_lists(&mut document, path)?;
         let problems = Problems::default();
         let case = read::case(&Item::new(&document.root, "", &problems), path, &document);
         let found = problems.into_inner();

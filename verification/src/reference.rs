@@ -22,32 +22,9 @@ pub use compare::{relative_rms, relative_uncertainty, rms_difference, rms_uncert
 pub use curve::ReferenceCurve;
 pub use error::ReferenceError;
 pub use quantity::quantities;
-pub use source_file::{Obtained, Slip};
+pub use source_file::{Obtained, Slip, Source};
 
 use crate::record::{Reference, ReferenceKind};
-
-/// One `source.toml`, numbers aside.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Source {
-    /// Folder below the library's, with `/`: `estrada-2024/figure-3a`.
-    pub id: String,
-    /// Citation.
-    pub citation: String,
-    /// Address, where there is one.
-    pub url: Option<String>,
-    /// How the numbers were obtained.
-    pub obtained: Obtained,
-    /// Kind, for records.
-    pub kind: ReferenceKind,
-    /// What was modelled.
-    pub model: String,
-    /// How finely.
-    pub resolution: String,
-    /// What to know before comparing.
-    pub remarks: Vec<String>,
-    /// Misprints, and what is used instead.
-    pub slips: Vec<Slip>,
-}
 
 /// A number from a source.
 #[derive(Debug, Clone, PartialEq)]

@@ -17,7 +17,6 @@ mod homogeneous_state;
 mod judging;
 mod linear_field;
 mod nurbs;
-mod offers;
 pub mod orders;
 mod patches;
 mod pulse;
@@ -35,7 +34,6 @@ use stability::{
 
 use fisura::dynamics::projection::Projection;
 use fisura::dynamics::total_frame::TotalFrame;
-pub use offers::{Offer, Offers};
 use thiserror::Error;
 
 use crate::case::Case;
@@ -58,27 +56,57 @@ pub struct Measurement {
     pub reference: Option<Reference>,
 }
 
-/// Everything a study found.
+/// Everything a study found, or what it will measure.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Findings {
-    /// Numbers, for the checks.
+    /// Numbers, for the checks; without values in a plan.
     pub measurements: Vec<Measurement>,
     /// Tables behind the figures: file name without ending.
     pub series: Vec<(String, Table)>,
     /// Figures.
     pub figures: Vec<Figure>,
+    /// Whether nothing is computed.
+    plan: bool,
 }
 
+/// A dimensionless number in words, and what it is held against.
+type Quantity<Words> = (Words, Option<Reference>);
+
 impl Findings {
-    /// Adds a dimensionless number held against an exact value of zero or against nothing.
-    pub fn add(&mut self, variant: &str, quantity: &str, value: f64, reference: Option<Reference>) {
-        self.measurements.push(Measurement {
-            variant: variant.to_string(),
-            quantity: quantity.to_string(),
-            unit: "1".to_string(),
-            value: Some(value),
-            reference,
-        });
+    /// Adds what a variant is measured by; `values` computes the numbers, unless this is a plan.
+    fn measure<Words: ToString, const N: usize>(
+        &mut self,
+        variant: &str,
+        quantities: [Quantity<Words>; N],
+        values: impl FnOnce() -> Result<[f64; N], StudyError>,
+    ) -> Result<(), StudyError> {
+        let values = self.compute(values)?;
+        self.add_all(variant, quantities, values);
+        Ok(())
+    }
+
+    /// Adds what a variant is measured by, and the numbers, if there are any.
+    fn add_all<Words: ToString, const N: usize>(
+        &mut self,
+        variant: &str,
+        quantities: [Quantity<Words>; N],
+        values: Option<[f64; N]>,
+    ) {
+        let values = values.map_or([None; N], |values| values.map(Some));
+        for ((quantity, reference), value) in quantities.into_iter().zip(values) {
+            self.add(variant, &quantity.to_string(), value, reference);
+        }
+    }
+
+    /// What `work` finds; nothing in a plan.
+    fn compute<T>(&self, work: impl FnOnce() -> Result<T, StudyError>) -> Result<Option<T>, StudyError> {
+        if self.plan { Ok(None) } else { work().map(Some) }
+    }
+
+    /// Adds a dimensionless number.
+    fn add(&mut self, variant: &str, quantity: &str, value: impl Into<Option<f64>>, reference: Option<Reference>) {
+        let [variant, quantity, unit] = [variant, quantity, "1"].map(String::from);
+        self.measurements.push(Measurement { variant, quantity, unit, value: value.into(), reference });
     }
 }
 
@@ -129,8 +157,8 @@ fn other(message: impl ToString) -> StudyError {
     StudyError::Other(message.to_string())
 }
 
-/// What a study offers for a case, or why it cannot be carried out.
-pub type Offered = Result<Offers, StudyError>;
+/// Adds what a study finds or, in a plan, what it will measure.
+type Run = fn(&Case, &[CaseScene], &mut Findings) -> Result<(), StudyError>;
 
 /// A way to run a case and to measure.
 #[derive(Debug, Clone, Copy)]
@@ -139,10 +167,27 @@ pub struct Study {
     pub name: &'static str,
     /// Tables of a case that it reads, of [`INPUTS`]; the first has to be there.
     pub reads: &'static [&'static str],
-    /// What it will measure.
-    pub offers: fn(&Case, &[CaseScene]) -> Offered,
+    run: Run,
+}
+
+impl Study {
     /// Runs it.
-    pub run: fn(&Case, &[CaseScene]) -> Result<Findings, StudyError>,
+    ///
+    /// # Errors
+    /// What keeps it from being carried out.
+    pub fn run(&self, case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
+        let mut findings = Findings::default();
+        (self.run)(case, scenes, &mut findings).map(|()| findings)
+    }
+
+    /// What it will measure.
+    ///
+    /// # Errors
+    /// What keeps it from being carried out, as far as it is known before.
+    pub fn plan(&self, case: &Case, scenes: &[CaseScene]) -> Result<Vec<Measurement>, StudyError> {
+        let mut plan = Findings { plan: true, ..Findings::default() };
+        (self.run)(case, scenes, &mut plan).map(|()| plan.measurements)
+    }
 }
 
 /// Tables and keys of a case file that not every study reads.
@@ -151,45 +196,40 @@ pub const INPUTS: [&str; 7] = ["scene", "values", "variant", "energy_factor", "c
 const NOTHING: &[&str] = &[];
 const SCENES: &[&str] = &["scene", "variant"];
 
-const fn study(
-    name: &'static str,
-    reads: &'static [&'static str],
-    offers: fn(&Case, &[CaseScene]) -> Offered,
-    run: fn(&Case, &[CaseScene]) -> Result<Findings, StudyError>,
-) -> Study {
-    Study { name, reads, offers, run }
+const fn study(name: &'static str, reads: &'static [&'static str], run: Run) -> Study {
+    Study { name, reads, run }
 }
 
 /// Studies other than `scene`.
 pub static STUDIES: [Study; 28] = [
-    study("basis", NOTHING, basis::offers, basis::study),
-    study("constant-stress", SCENES, constant_stress::offers, constant_stress::study),
-    study("homogeneous-state", SCENES, homogeneous_state::offers, homogeneous_state::study),
-    study("softening-bar", SCENES, softening_bar::offers, softening_bar::study),
-    study("compressive-step", SCENES, compressive_step::offers, compressive_step::study),
-    study("nurbs", NOTHING, nurbs::offers, nurbs::study),
-    study("convergence", &["convergence"], convergence::offers, convergence::study),
-    study("vibration", NOTHING, vibration::offers, vibration::study),
-    study("pulse", NOTHING, pulse::offers, pulse::study),
-    study("crack-cost", NOTHING, crack_cost::offers, crack_cost::study),
-    study("crack-profile", NOTHING, crack_profile::offers, crack_profile::study),
-    study("rotation", SCENES, rotation::offers, rotation::study),
-    study("eigenfrequencies", NOTHING, eigenfrequencies::offers, eigenfrequencies::study),
-    study("linear-field", NOTHING, linear_field::offers, linear_field::study),
-    study("contact-impact", SCENES, contact::impact::offers, contact::impact::study),
-    study("contact-onset", SCENES, contact::onset::offers, contact::onset::study),
-    study("contact-hertz", SCENES, contact::hertz::offers, contact::hertz::study),
-    study("rings", &["scene", "variant", "energy_factor"], rings::offers, rings::study),
-    study("rings-sweep", &["rings", "scene"], rings::sweep_offers, rings::sweep),
-    study("critical-step", NOTHING, critical_step::offers, critical_step::study),
-    study("step-growth", NOTHING, growth::offers, growth::study),
-    study("incompressible", NOTHING, incompressible::offers, incompressible::study),
-    study("split-families", NOTHING, split_families::offers, split_families::study),
-    study("boundary-points", NOTHING, boundary_points::offers, boundary_points::study),
-    study("unit-systems", NOTHING, units::offers, units::study),
-    study("repeatability", NOTHING, repeatability::offers, repeatability::study),
-    study("unloading", NOTHING, unloading::offers, unloading::study),
-    study("judging", NOTHING, judging::offers, judging::study),
+    study("basis", NOTHING, basis::study),
+    study("constant-stress", SCENES, constant_stress::study),
+    study("homogeneous-state", SCENES, homogeneous_state::study),
+    study("softening-bar", SCENES, softening_bar::study),
+    study("compressive-step", SCENES, compressive_step::study),
+    study("nurbs", NOTHING, nurbs::study),
+    study("convergence", &["convergence"], convergence::study),
+    study("vibration", NOTHING, vibration::study),
+    study("pulse", NOTHING, pulse::study),
+    study("crack-cost", NOTHING, crack_cost::study),
+    study("crack-profile", NOTHING, crack_profile::study),
+    study("rotation", SCENES, rotation::study),
+    study("eigenfrequencies", NOTHING, eigenfrequencies::study),
+    study("linear-field", NOTHING, linear_field::study),
+    study("contact-impact", SCENES, contact::impact::study),
+    study("contact-onset", SCENES, contact::onset::study),
+    study("contact-hertz", SCENES, contact::hertz::study),
+    study("rings", &["scene", "variant", "energy_factor"], rings::study),
+    study("rings-sweep", &["rings", "scene"], rings::sweep),
+    study("critical-step", NOTHING, critical_step::study),
+    study("step-growth", NOTHING, growth::study),
+    study("incompressible", NOTHING, incompressible::study),
+    study("split-families", NOTHING, split_families::study),
+    study("boundary-points", NOTHING, boundary_points::study),
+    study("unit-systems", NOTHING, units::study),
+    study("repeatability", NOTHING, repeatability::study),
+    study("unloading", NOTHING, unloading::study),
+    study("judging", NOTHING, judging::study),
 ];
 
 /// The study of that name.

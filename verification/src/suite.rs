@@ -53,18 +53,18 @@ pub struct Options<'a> {
     pub seconds: &'a Seconds,
 }
 
-/// Told what is going on, by several threads at once.
+/// Told what is going on, by several threads at once; does nothing about what it does not define.
 pub trait Progress: Sync {
     /// A case starts.
-    fn started(&self, case: &Case);
+    fn started(&self, _case: &Case) {}
     /// The finished fraction of the case.
-    fn advanced(&self, case: &Case, fraction: f64);
+    fn advanced(&self, _case: &Case, _fraction: f64) {}
     /// A case has been running for ten times as long as it should.
-    fn slow(&self, case: &Case, limit: Duration);
+    fn slow(&self, _case: &Case, _limit: Duration) {}
     /// A case is over its time and was asked to stop.
-    fn late(&self, case: &Case, limit: Duration);
+    fn late(&self, _case: &Case, _limit: Duration) {}
     /// A case is finished.
-    fn finished(&self, case: &Case, records: &[Record]);
+    fn finished(&self, _case: &Case, _records: &[Record]) {}
 }
 
 /// What keeps a verification from being carried out at all.

@@ -18,11 +18,6 @@ const PROBE: f64 = 1e-8;
 struct Gradients<'a>(&'a mut [[Lane; 4]]);
 
 impl PointKernel for Gradients<'_> {
-    const DISPLACEMENT: bool = true;
-    const PHASE: bool = false;
-    const PHASE_GRADIENT: bool = false;
-    const STRESS: bool = false;
-
     #[inline(always)]
     fn points<const FMA: bool>(&mut self, at: usize, _weight: Lane, values: &PointValues) -> Stress {
         self.0[at] = values.gradient;
@@ -46,9 +41,6 @@ struct StressAlong<'a, K> {
 }
 
 impl<K: PointKernel> PointKernel for StressAlong<'_, K> {
-    const DISPLACEMENT: bool = true;
-    const PHASE: bool = false;
-    const PHASE_GRADIENT: bool = false;
     const STRESS: bool = true;
 
     #[inline(always)]

@@ -31,9 +31,6 @@ pub struct ElasticStress {
 }
 
 impl PointKernel for ElasticStress {
-    const DISPLACEMENT: bool = true;
-    const PHASE: bool = false;
-    const PHASE_GRADIENT: bool = false;
     const STRESS: bool = true;
     const EVERY_STEP: bool = true;
 
@@ -59,10 +56,6 @@ pub struct HistoryUpdate<'a> {
 }
 
 impl PointKernel for HistoryUpdate<'_> {
-    const DISPLACEMENT: bool = true;
-    const PHASE: bool = false;
-    const PHASE_GRADIENT: bool = false;
-    const STRESS: bool = false;
     const EVERY_STEP: bool = true;
 
     #[inline(always)]
@@ -113,9 +106,7 @@ pub struct DegradedStress<'a> {
 }
 
 impl PointKernel for DegradedStress<'_> {
-    const DISPLACEMENT: bool = true;
     const PHASE: bool = true;
-    const PHASE_GRADIENT: bool = false;
     const STRESS: bool = true;
     const EVERY_STEP: bool = true;
 
@@ -187,9 +178,6 @@ pub(crate) struct ScreenedStress<'a> {
 }
 
 impl PointKernel for ScreenedStress<'_> {
-    const DISPLACEMENT: bool = true;
-    const PHASE: bool = false;
-    const PHASE_GRADIENT: bool = false;
     const STRESS: bool = true;
     const EVERY_STEP: bool = true;
 
@@ -220,9 +208,6 @@ pub(crate) struct HeldPhaseStress<'a> {
 }
 
 impl PointKernel for HeldPhaseStress<'_> {
-    const DISPLACEMENT: bool = true;
-    const PHASE: bool = false;
-    const PHASE_GRADIENT: bool = false;
     const STRESS: bool = true;
 
     #[inline(always)]
@@ -243,11 +228,6 @@ pub(crate) struct LeastStretch<'a> {
 }
 
 impl PointKernel for LeastStretch<'_> {
-    const DISPLACEMENT: bool = true;
-    const PHASE: bool = false;
-    const PHASE_GRADIENT: bool = false;
-    const STRESS: bool = false;
-
     #[inline(always)]
     fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress {
         let [xx, xy, yx, yy] = values.gradient;
@@ -273,11 +253,6 @@ pub(crate) struct LargestDistortion<'a> {
 }
 
 impl PointKernel for LargestDistortion<'_> {
-    const DISPLACEMENT: bool = true;
-    const PHASE: bool = false;
-    const PHASE_GRADIENT: bool = false;
-    const STRESS: bool = false;
-
     #[inline(always)]
     fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress {
         let [xx, xy, yx, yy] = values.gradient;
@@ -317,7 +292,6 @@ impl PointKernel for SurfaceEnergy<'_> {
     const DISPLACEMENT: bool = false;
     const PHASE: bool = true;
     const PHASE_GRADIENT: bool = true;
-    const STRESS: bool = false;
 
     #[inline(always)]
     fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress {

@@ -41,13 +41,13 @@ impl Stress {
 /// Physics at the points of a strip.
 pub trait PointKernel: Send {
     /// Whether the displacement gradient is needed.
-    const DISPLACEMENT: bool;
+    const DISPLACEMENT: bool = true;
     /// Whether the phase field is needed.
-    const PHASE: bool;
+    const PHASE: bool = false;
     /// Whether its gradient is needed.
-    const PHASE_GRADIENT: bool;
+    const PHASE_GRADIENT: bool = false;
     /// Whether the returned stress is to be integrated into nodal forces.
-    const STRESS: bool;
+    const STRESS: bool = false;
     /// Whether it runs in every step, and is compiled for each of the usual degrees.
     const EVERY_STEP: bool = false;
 

@@ -30,7 +30,7 @@ fn cracking(split: Split, stress: f64) -> Scene {
 }
 
 /// A strip across x, seeded across its middle, `place` spans beyond a knot.
-fn seeded_strip(degree: usize, spans_of_l0: f64, place: f64) -> Scene {
+pub fn seeded_strip(degree: usize, spans_of_l0: f64, place: f64) -> Scene {
     let h = L0 / spans_of_l0;
     let columns = (24.0 * spans_of_l0) as usize;
     let size = [columns as f64 * h, 4.0 * h];
@@ -42,7 +42,7 @@ fn seeded_strip(degree: usize, spans_of_l0: f64, place: f64) -> Scene {
 }
 
 /// Surface energy at the start, over Gc times the length of the crack.
-fn cost(scene: &Scene) -> f64 {
+pub fn cost(scene: &Scene) -> f64 {
     let crack = &scene.bodies[0].cracks[0];
     let length: f64 = crack.segments().map(|[a, b]| (b[0] - a[0]).hypot(b[1] - a[1])).sum();
     let sample = Simulation::new(scene).expect("the scene starts").sample();

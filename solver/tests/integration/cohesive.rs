@@ -1,7 +1,6 @@
 //! Cohesive cracks: strength, stability at the onset, where damage is the least energy, the ledger, what is
 //! refused.
 
-use fisura::Simulation;
 use fisura::linear_algebra::extremes::{larger, smaller};
 use fisura::linear_algebra::lane::Lane;
 use fisura::material::degradation::FractureModel;
@@ -13,7 +12,7 @@ use fisura::scene::*;
 use fisura::splines::patch::Patch;
 use fisura::validate::validate;
 
-use crate::at1::cost_on_a_line;
+use crate::at1::{cost, cost_on_a_line, seeded_strip};
 use crate::common::{elastic_scene, make_cohesive, notched_plate, relative_closure, run};
 
 const L0: f64 = 0.25e-3;
@@ -26,29 +25,21 @@ fn cracking(softening: Softening, split: Split) -> Scene {
     scene
 }
 
-fn surface_energy(scene: &Scene) -> f64 {
-    Simulation::new(scene).expect("the scene starts").sample().fracture.unwrap().energy
-}
-
 /// In the limit d = 1 − sin(|x|/b), which costs Gc.
 #[test]
 fn a_seed_costs_what_it_costs_on_a_line_and_in_the_limit_gc() {
     for (degree, place) in [(1, 0.0), (1, 0.4), (2, 0.0), (2, 0.5), (3, 0.0), (3, 0.3), (4, 0.5)] {
-        let cost = |spans_of_l0: f64| {
-            let h = L0 / spans_of_l0;
-            let columns = (24.0 * spans_of_l0) as usize;
-            let size = [columns as f64 * h, 4.0 * h];
-            let mut scene = elastic_scene(degree, size, [columns, 4]);
-            let x = ((columns / 2) as f64 + place) * h;
-            scene.bodies[0].cracks = vec![Crack::seed([x, 0.0], [x, size[1]])];
+        let excess = |spans_of_l0: f64| {
+            let mut scene = seeded_strip(degree, spans_of_l0, place);
+            let [x, _] = scene.bodies[0].cracks[0].points[0];
             make_cohesive(&mut scene, 7.5e6, Softening::Linear, Split::Rankine);
             scene.bodies[0].particles_per_cell = [degree + 1; 2];
-            let cost = surface_energy(&scene) / (3.0 * size[1]);
+            let cost = cost(&scene);
             let on_line = cost_on_a_line(degree, &scene.mesh.knots[0], x, std::f64::consts::FRAC_1_PI, 2.0);
             assert!((cost - on_line).abs() < 1e-6, "p = {degree}, {spans_of_l0}, {place}: {cost} and {on_line}");
             cost - 1.0
         };
-        let costs = [4.0, 8.0].map(cost);
+        let costs = [4.0, 8.0].map(excess);
         let order = (costs[0] / costs[1]).log2();
         assert!((order - 1.0).abs() < 0.1 && costs[1] > 0.0, "p = {degree}, {place}: {costs:?}, order {order}");
     }

@@ -122,7 +122,6 @@ fn edges_that_cut_spans_are_loaded() {
     }
 }
 
-/// Segments along slanted edges and through corners, where a span on the edge often has no point at all.
 /// Impulses of loads that end or peak between two steps; velocities of sides give exact displacements.
 #[test]
 fn impulses_and_displacements_are_exact_however_short_they_are() {
@@ -149,6 +148,7 @@ fn impulses_and_displacements_are_exact_however_short_they_are() {
     }
 }
 
+/// Segments along slanted edges and through corners, where a span on the edge often has no point at all.
 #[test]
 fn segments_of_other_shapes_are_loaded() {
     let triangle = vec![[0.63, 0.51], [5.27, 1.98], [2.11, 5.43]];

@@ -12,7 +12,7 @@ use fisura::material::elasticity::ElasticModuli;
 use fisura::scene::{Frame, Kinematics, Mesh, Scene, Shape, Transfer};
 
 use super::record::{AnswerError, BenchRecord};
-use super::timing::{Contestant, Stopwatch, pool, round_robin};
+use super::timing::{Contestant, pool, round_robin, time_steps};
 use super::{BenchError, Settings};
 use crate::extremes::largest;
 use crate::study::contact::{run, sample_is_due};
@@ -113,12 +113,7 @@ fn contestant(id: &str, way: Way, spans: usize, scene: Scene) -> Result<Contesta
     let prepared = Simulation::new(&scene)?;
     let (extent, steps) = (prepared.extent(), prepared.plan().steps());
     let record = BenchRecord::of_steps(id, way.label(), &extent, steps).with("degree", way.0).with("spans", spans);
-    let run = move |_: &mut BenchRecord| {
-        let mut simulation = Simulation::new(&scene)?;
-        let watch = Stopwatch::start();
-        super::advance(&mut simulation, steps)?;
-        Ok(watch.read())
-    };
+    let run = move |_: &mut BenchRecord| time_steps(&mut Simulation::new(&scene)?, steps);
     Ok(Contestant { record, run: Box::new(run) })
 }
 

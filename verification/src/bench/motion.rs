@@ -5,7 +5,7 @@
 //! proportion to h (`convergence/moving-axis-aligned`).
 
 use super::record::{AnswerError, BenchRecord};
-use super::timing::{Contestant, Stopwatch, pool, round_robin};
+use super::timing::{Contestant, pool, round_robin, timed};
 use super::{BenchError, Settings};
 use crate::study::convergence::Meshes;
 
@@ -55,10 +55,8 @@ fn contestants<'a>(meshes: Meshes<'a>, settings: &Settings, moving: bool) -> Res
             let quantity = "relative error of the displacement";
             record.error = Some(AnswerError::relative(quantity, first.errors[0], "the exact motion"));
             let run = move |record: &mut BenchRecord| {
-                let watch = Stopwatch::start();
-                let again = meshes.level(curve, cells)?;
-                let sample = watch.read();
-                record.verify(again.errors == first.errors, "the same errors bit by bit in every run");
+                let (sample, again) = timed(|| meshes.level(curve, cells));
+                record.verify(again?.errors == first.errors, "the same errors bit by bit in every run");
                 Ok(sample)
             };
             contestants.push(Contestant { record, run: Box::new(run) });

@@ -13,7 +13,7 @@ pub mod block;
 pub(super) mod program;
 
 use super::record::{BenchRecord, Sample};
-use super::timing::{Contestant, Stopwatch, pool, round_robin};
+use super::timing::{Contestant, pool, round_robin, timed};
 use super::{BenchError, Settings};
 use crate::output::OutputFolder;
 use crate::output::history::Table;
@@ -60,9 +60,8 @@ fn ours(block: &PeerBlock) -> Contestant<'_> {
     let run = move |record: &mut BenchRecord| {
         let mut frame = block.start.clone();
         let stored = frame.sample(block.step).stored();
-        let watch = Stopwatch::start();
-        block.advance(&mut frame, steps)?;
-        let sample = watch.read();
+        let (sample, advanced) = timed(|| block.advance(&mut frame, steps));
+        advanced?;
         let mut found = frame.sample(block.step);
         found.close(stored);
         let closure = found.closure.abs() / found.largest_term();

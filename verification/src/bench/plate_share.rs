@@ -6,7 +6,7 @@ use fisura::scene::Scene;
 
 use super::plate_scene::half;
 use super::record::BenchRecord;
-use super::timing::Stopwatch;
+use super::timing::timed;
 use super::{BenchError, Settings};
 
 /// Steps of the plate while it cracks, on one thread, and in each of them the part of the phase field: the
@@ -39,14 +39,14 @@ fn share_of(scene: &Scene, run_up: usize, steps: usize) -> Result<Vec<BenchRecor
     let (mut same, mut iterations) = (true, 0);
     for _ in 0..steps {
         let mut before = frame.fracture.clone().ok_or_else(|| BenchError::other("the plate does not fracture"))?;
-        let watch = Stopwatch::start();
-        frame.step(dt).map_err(|_| broken())?;
-        whole.samples.push(watch.read());
+        let (sample, stepped) = timed(|| frame.step(dt));
+        stepped.map_err(|_| broken())?;
+        whole.samples.push(sample);
         let after = frame.fracture.as_ref().ok_or_else(|| BenchError::other("the plate does not fracture"))?;
         before.history.clone_from(&after.history);
-        let watch = Stopwatch::start();
-        before.solve_phase_field(frame.lattice()).map_err(|_| broken())?;
-        solve.samples.push(watch.read());
+        let (sample, solved) = timed(|| before.solve_phase_field(frame.lattice()));
+        solved.map_err(|_| broken())?;
+        solve.samples.push(sample);
         same &= before.field.control_values() == after.field.control_values();
         iterations += after.iterations;
     }

@@ -94,7 +94,7 @@ impl AnswerError {
 }
 
 /// How much of what one sample does.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Work {
     /// Amount.
     pub amount: f64,
@@ -103,17 +103,18 @@ pub struct Work {
 }
 
 /// Which time counts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Clock {
     /// That of the processor, over all threads: what other programs do meanwhile does not count.
+    #[default]
     Processor,
     /// That on the wall: what more threads bring.
     Wall,
 }
 
 /// One benchmark.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct BenchRecord {
     /// `family/…`.
     pub id: String,
@@ -158,19 +159,10 @@ impl BenchRecord {
             family: id.split('/').next().unwrap_or_default().to_string(),
             id,
             label: label.into(),
-            parameters: BTreeMap::new(),
             threads: 1,
-            clock: Clock::Processor,
-            error: None,
-            further_errors: Vec::new(),
             work: Work { amount, unit: unit.to_string() },
-            memory_bytes: 0,
-            verified: false,
             answer: NOTHING.into(),
-            samples: Vec::new(),
-            wall_s: Spread::default(),
-            cpu_s: Spread::default(),
-            ns_per_unit: Spread::default(),
+            ..Self::default()
         }
     }
 

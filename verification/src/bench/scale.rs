@@ -17,7 +17,7 @@ use fisura::scene::{Crack, Scene, Side, TimeFactor, Traction};
 
 use super::block::{MARGIN, SPAN, cracked_scene, elastic_scene, moving_scene};
 use super::record::BenchRecord;
-use super::timing::{Stopwatch, pool};
+use super::timing::{pool, time_steps};
 use super::{BenchError, Settings, advance};
 use crate::scene_run::peak_memory_mb;
 
@@ -98,9 +98,7 @@ fn measure(block: &Block, cells: usize, rounds: usize) -> Result<BenchRecord, Be
     let mut record = BenchRecord::of_steps(id, block.label, &extent, steps);
     let before = simulation.phase_field_counts();
     for _ in 0..rounds {
-        let watch = Stopwatch::start();
-        advance(&mut simulation, steps)?;
-        record.samples.push(watch.read());
+        record.samples.push(time_steps(&mut simulation, steps)?);
     }
     let after = simulation.phase_field_counts();
     let [solves, iterations] = [after.solves - before.solves, after.iterations - before.iterations];

@@ -11,7 +11,7 @@ use fisura::scene::{
 use super::block::{MARGIN, SPAN, cracked_scene, elastic_scene};
 use super::plate_scene;
 use super::record::BenchRecord;
-use super::timing::{Contestant, Stopwatch, pool, round_robin};
+use super::timing::{Contestant, pool, round_robin, time_steps};
 use super::{BenchError, Settings, advance};
 
 /// Degree of the blocks.
@@ -141,9 +141,7 @@ fn contestant(
     let record = BenchRecord::of_steps(id, name, &extent, STEPS).with("frame", word).with("models", extent.models);
     let run = move |record: &mut BenchRecord| {
         let before = simulation.phase_field_counts();
-        let watch = Stopwatch::start();
-        advance(&mut simulation, STEPS)?;
-        let sample = watch.read();
+        let sample = time_steps(&mut simulation, STEPS)?;
         let counts = simulation.phase_field_counts();
         let [solves, iterations] = [counts.solves - before.solves, counts.iterations - before.iterations];
         let forces = simulation.updated_frame().map_or(0, |f| f.contact_forces(simulation.plan().step).len());
@@ -181,11 +179,7 @@ fn halves(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
         let id = format!("scenes/total/{}", name.replace(' ', "-"));
         let record =
             BenchRecord::of_steps(id, name, &extent, STEPS).with("frame", "total").with("models", extent.models);
-        let run = move |_: &mut BenchRecord| {
-            let watch = Stopwatch::start();
-            advance(&mut simulation, STEPS)?;
-            Ok(watch.read())
-        };
+        let run = move |_: &mut BenchRecord| time_steps(&mut simulation, STEPS);
         contestants.push(Contestant { record, run: Box::new(run) });
     }
     let difference = (kinetic[0] / kinetic[1] - 1.0).abs();

@@ -14,7 +14,7 @@ use fisura::phase_field::integrate_shape_functions;
 
 use super::block::{Block, SPAN, cracked_scene};
 use super::record::BenchRecord;
-use super::timing::{Contestant, Stopwatch, pool, round_robin};
+use super::timing::{Contestant, pool, round_robin, timed};
 use super::{BenchError, Settings};
 use crate::extremes::smallest;
 
@@ -114,9 +114,7 @@ impl System {
         record.memory_bytes = bytes as u64;
         let run = move |record: &mut BenchRecord| {
             let mut x = self.start.clone();
-            let watch = Stopwatch::start();
-            let iterations = solver(&mut x);
-            let sample = watch.read();
+            let (sample, iterations) = timed(|| solver(&mut x));
             record.parameters.insert("iterations".into(), iterations.into());
             record.verify_at_most("error against a direct solution", self.error(&x, &exact), 2.0 * TOLERANCE);
             Ok(sample)

@@ -14,7 +14,7 @@ use fisura::transfer::sweep::StripForces;
 use super::block::{Block, elastic_scene, moving_scene};
 use super::moving_block::{MovingBlock, minimal};
 use super::record::{BenchRecord, Sample};
-use super::timing::{Contestant, Stopwatch, pool, round_robin, time};
+use super::timing::{Contestant, pool, round_robin, time, timed};
 use super::{BenchError, Settings};
 use crate::extremes::larger;
 
@@ -144,9 +144,7 @@ fn phase_field<'a, const P: usize>(block: &'a Block) -> Result<Vec<Contestant<'a
         // a solve changes its start: each begins from a copy, which is not timed
         let run = move |_: &mut BenchRecord| {
             let mut field = start.clone();
-            let watch = Stopwatch::start();
-            let solved = black_box(field.solve(&block.lattice, &history));
-            let sample = watch.read();
+            let (sample, solved) = timed(|| black_box(field.solve(&block.lattice, &history)));
             solved.map_err(|_| BenchError::other("the phase field does not converge"))?;
             Ok(sample)
         };

@@ -46,9 +46,14 @@ fn process_seconds() -> Option<f64> {
 
 /// Time of some work.
 pub fn time(work: impl FnOnce()) -> Sample {
+    timed(work).0
+}
+
+/// Time of some work, and what it gives.
+pub fn timed<T>(work: impl FnOnce() -> T) -> (Sample, T) {
     let watch = Stopwatch::start();
-    work();
-    watch.read()
+    let result = work();
+    (watch.read(), result)
 }
 
 /// Calls of a short piece of work, given the time of one, that make a sample of about a twentieth of a
@@ -74,9 +79,7 @@ pub fn whole_run<'a>(
     answer: impl Fn(&mut BenchRecord, &Table) + 'a,
 ) -> Contestant<'a> {
     let run = move |record: &mut BenchRecord| {
-        let watch = Stopwatch::start();
-        let run = run_scene(&scene, &mut |_| {}, &mut |_, _| {});
-        let sample = watch.read();
+        let (sample, run) = timed(|| run_scene(&scene, &mut |_| {}, &mut |_, _| {}));
         if let Some(breakdown) = run.breakdown {
             return Err(breakdown.into());
         }
@@ -104,17 +107,23 @@ impl<'a> Contestant<'a> {
     /// # Errors
     /// A step that breaks down; so does the run of the contestant.
     pub fn steps(mut record: BenchRecord, mut simulation: Simulation) -> Result<Self, BenchError> {
-        let watch = Stopwatch::start();
-        simulation.step()?;
-        let calls = calls_of(watch.read());
+        let (sample, stepped) = timed(|| simulation.step());
+        stepped?;
+        let calls = calls_of(sample);
         record.work.amount *= calls as f64;
-        let run = move |_: &mut BenchRecord| {
-            let watch = Stopwatch::start();
-            (0..calls).try_for_each(|_| simulation.step())?;
-            Ok(watch.read())
-        };
+        let run = move |_: &mut BenchRecord| time_steps(&mut simulation, calls);
         Ok(Self { record, run: Box::new(run) })
     }
+}
+
+/// Time of steps of a simulation.
+///
+/// # Errors
+/// A step that breaks down.
+pub fn time_steps(simulation: &mut Simulation, steps: usize) -> Result<Sample, BenchError> {
+    let (sample, stepped) = timed(|| super::advance(simulation, steps));
+    stepped?;
+    Ok(sample)
 }
 
 /// Runs the contestants one after the other, round after round: what disturbs the machine meets all of them.

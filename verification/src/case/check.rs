@@ -132,8 +132,9 @@ pub(super) struct CheckTable {
     /// What changes in checks of the set: `with = { id-of-a-check = { max = 1 } }`.
     #[schemars(with = "Option<BTreeMap<String, Map<String, Value>>>")]
     with: Option<IgnoredAny>,
-    /// A check for each entry: `each = [{ variant = "p=2", max = 1 }]`.
-    #[schemars(with = "Option<Vec<Map<String, Value>>>")]
+    /// A check for each entry: `each = [{ variant = "p=2", max = 1 }]`; lists in the list are combined, and
+    /// an entry may have `each`, too.
+    #[schemars(with = "Option<Vec<Value>>")]
     each: Option<IgnoredAny>,
 }
 

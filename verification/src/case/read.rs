@@ -72,18 +72,23 @@ pub(super) struct CaseTable {
     chart: Vec<ChartTable>,
 }
 
-/// A changed copy of the scene.
+/// A changed copy of the scene, or one for each entry of a list, which are written out before it is read.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct VariantTable {
     /// Name, part of the ids of its records.
+    #[schemars(with = "Option<Words>")]
     name: Words,
     /// Keys of the scene and their values: `set = { "mesh.degree" = 3 }`.
-    #[schemars(with = "Map<String, Value>")]
+    #[schemars(with = "Option<Map<String, Value>>")]
     #[expect(dead_code, reason = "its values are read with their places")]
     set: BTreeMap<String, IgnoredAny>,
     /// Energies of this run times this are those of the whole body, if not those of the case.
     energy_factor: Option<Positive>,
+    /// A variant for each entry: `each = [{ name = "p=3", set = { "mesh.degree" = 3 } }]`.
+    #[schemars(with = "Option<Vec<Map<String, Value>>>")]
+    #[expect(dead_code, reason = "it is written out before")]
+    each: Option<IgnoredAny>,
 }
 
 pub(super) fn case(item: &Item<'_>, path: &Path, document: &Document) -> Option<Case> {

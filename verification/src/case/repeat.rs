@@ -1,6 +1,7 @@
 //! What is written once for several cases, in files beside the folders of the suites: `base` takes the part
 //! of a case in a table of `bases.toml`, `set` takes the checks of a list of `check-sets.toml`. `each` in a
-//! check lists what differs between several.
+//! check or a variant lists what differs between several; lists in a list are combined, and an entry may
+//! have an `each`, too.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -14,33 +15,46 @@ use crate::scene::{Problem, SceneFileError};
 const BASES: &str = "bases.toml";
 /// File of the sets.
 const SETS: &str = "check-sets.toml";
-/// Most sets within each other.
+/// Most sets or bases within each other.
 const DEEPEST: usize = 8;
 
 type Table = BTreeMap<String, Node>;
 
-/// Adds what the base of a case at `path` states. Tables of both become one, and any other value of the case
-/// replaces that of the base; in a table over a list, keys are numbers of entries.
+/// Adds what the base of a case at `path` states, and the base of that. Tables of both become one, and any
+/// other value of the case replaces that of the base; in a table over a list, keys are numbers of entries.
 ///
 /// # Errors
 /// The file of the bases, if one is named and the file cannot be read; an unknown base; a list that has no
 /// such entry.
 pub(super) fn add_base(document: &mut Document, path: &Path) -> Result<(), SceneFileError> {
-    let Some(name) = document.root.get("base").cloned() else { return Ok(()) };
+    if document.root.get("base").is_none() {
+        return Ok(());
+    }
     let bases = document.include(&shared(path, BASES))?;
     let mut problems = Vec::new();
-    if let Some(mut root) = named(&bases, BASES, &name, "base", &mut problems) {
-        if let Some(Node { location, .. }) = root.get("base").cloned() {
-            let (message, remedy) = ("a base within a base".into(), "write out one of the two".into());
-            problems.push(Problem { key: "base".into(), location, message, remedy });
-        }
-        put_over(&mut root, "", &document.root, &mut problems);
-        if let Value::Table(table) = &mut root.value {
-            table.remove("base");
-        }
-        document.root = Node::new(root.value, None);
+    let root = on_base(&document.root, &bases, 0, &mut problems);
+    if !problems.is_empty() {
+        return Err(document.error(&problems));
     }
-    if problems.is_empty() { Ok(()) } else { Err(document.error(&problems)) }
+    document.root = Node::new(root.value, None);
+    Ok(())
+}
+
+/// A case or base over the one that it names.
+fn on_base(over: &Node, bases: &Node, depth: usize, problems: &mut Vec<Problem>) -> Node {
+    let Some(name) = over.get("base") else { return over.clone() };
+    if depth == DEEPEST {
+        let (message, remedy) = ("the base holds itself".into(), format!("name another base of {BASES}"));
+        problems.push(Problem { key: "base".into(), location: name.location.clone(), message, remedy });
+    }
+    let base = named(bases, BASES, name, "base", problems).filter(|_| depth < DEEPEST);
+    let Some(base) = base else { return over.clone() };
+    let mut root = on_base(&base, bases, depth + 1, problems);
+    put_over(&mut root, "", over, problems);
+    if let Value::Table(table) = &mut root.value {
+        table.remove("base");
+    }
+    root
 }
 
 /// Puts `over` at `path`, or its entries, if tables or lists stand at both places.
@@ -75,28 +89,34 @@ fn named(shared: &Node, file: &str, name: &Node, key: &str, problems: &mut Vec<P
     found.cloned()
 }
 
-/// Writes out the checks of a case at `path` one by one. An entry of `each`, and what stands beside `set`,
-/// goes before what it is added to; `with` of a set says by id what changes in one of its checks.
+/// Writes out the variants and the checks of a case at `path` one by one. An entry of `each`, and what stands
+/// beside `set`, goes before what it is added to; `with` of a set says by id what changes in one of its
+/// checks.
 ///
 /// # Errors
 /// The file of the sets, if a set is named and the file cannot be read; an unknown set or id; lists that
 /// are none.
-pub(super) fn write_checks(document: &mut Document, path: &Path) -> Result<(), SceneFileError> {
-    let Some(Value::Array(checks)) = document.root.get("check").map(|node| node.value.clone()) else { return Ok(()) };
+pub(super) fn write_lists(document: &mut Document, path: &Path) -> Result<(), SceneFileError> {
+    let list = |key: &str| document.root.get(key).and_then(Node::as_array).unwrap_or_default().to_vec();
+    let (variants, checks) = (list("variant"), list("check"));
     let sets = match checks.iter().any(|check| check.get("set").is_some()) {
         true => Some(document.include(&shared(path, SETS))?),
         false => None,
     };
     let mut expansion = Expansion { sets, problems: Vec::new() };
+    let write = |(i, variant): (usize, &Node)| expansion.each(&format!("variant.{i}"), variant);
+    let variants: Vec<Node> = variants.iter().enumerate().flat_map(write).collect();
     let write = |(i, check): (usize, &Node)| expansion.check(&format!("check.{i}"), check, 0);
-    let written: Vec<Node> = checks.iter().enumerate().flat_map(write).collect();
+    let checks: Vec<Node> = checks.iter().enumerate().flat_map(write).collect();
     if !expansion.problems.is_empty() {
         return Err(document.error(&expansion.problems));
     }
-    if let Value::Table(root) = &mut document.root.value
-        && let Some(check) = root.get_mut("check")
-    {
-        check.value = Value::Array(written);
+    for (key, written) in [("variant", variants), ("check", checks)] {
+        if let Value::Table(root) = &mut document.root.value
+            && let Some(list) = root.get_mut(key).filter(|_| !written.is_empty())
+        {
+            list.value = Value::Array(written);
+        }
     }
     Ok(())
 }
@@ -168,10 +188,20 @@ impl Expansion {
         checks.iter().flat_map(|check| self.check(path, check, depth + 1)).collect()
     }
 
-    /// A check for each entry of its list, or the check itself.
+    /// A check for each entry of its list, or for each way to take one entry of each of its lists, or the
+    /// check itself.
     fn each(&mut self, path: &str, check: &Node) -> Vec<Node> {
         let Some(each) = check.get("each").cloned() else { return vec![check.clone()] };
         let entries = each.as_array().filter(|entries| !entries.is_empty());
+        if let Some(lists) = entries.filter(|all| all.iter().all(|list| list.as_array().is_some())) {
+            let mut checks = vec![check.clone()];
+            for list in lists {
+                let with = Table::from([("each".to_string(), list.clone())]);
+                checks.iter_mut().for_each(|check| put(check, &with));
+                checks = checks.iter().flat_map(|check| self.each(path, check)).collect();
+            }
+            return checks;
+        }
         let tables = entries.and_then(|all| all.iter().map(Node::as_table).collect::<Option<Vec<_>>>());
         let Some(tables) = tables else {
             let remedy = "write each = [ { variant = \"…\", max = 1 }, … ]".to_string();
@@ -186,7 +216,7 @@ impl Expansion {
             put(&mut one, entry);
             one
         };
-        tables.into_iter().map(one).collect()
+        tables.into_iter().map(one).flat_map(|one| self.each(path, &one)).collect()
     }
 }
 
@@ -267,14 +297,37 @@ mod tests {
     }
 
     #[test]
-    fn a_case_stands_over_its_base_and_an_override_over_both() {
-        let text = format!("base = \"bar\"\n[scene]\nmesh.degree = 3\nbody.1.name = \"end\"\n{CHECK}");
+    fn lists_in_a_list_are_combined_and_entries_may_be_lists() {
+        let text = "[[check]]\nunit = \"m\"\neach = [[{ quantity = \"a\" }, { quantity = \"b\", unit = \"s\" }], \
+                    [{ variant = \"p\" }, { each = [{ variant = \"q\" }, { variant = \"r\" }] }]]\n";
+        let case = read(text, SETS, BASES).unwrap();
+        let found = case.checks.iter().map(|c| format!("{} {} {}", c.id, c.unit, c.variant.as_deref().unwrap()));
+        assert_eq!(found.collect::<Vec<_>>(), ["a m p", "a m q", "a m r", "b s p", "b s q", "b s r"]);
+    }
+
+    #[test]
+    fn variants_of_a_list_share_what_stands_beside_it() {
+        let each = "[{ name = \"a\", set = {} }, { name = \"b\", set = {}, energy_factor = 1 }]";
+        let variants =
+            format!("[[variant]]\nenergy_factor = 2\neach = {each}\n[[variant]]\nname = \"c\"\nset = {{}}\n");
+        let text = format!("{variants}{CHECK}");
         let case = read(&text, SETS, BASES).unwrap();
-        assert_eq!((case.label.as_str(), case.document.root.get("base")), ("bar", None));
-        let scene = case.scene_node().unwrap().canonical();
-        let bodies = r#"[{name = String("one")}, {frozen = Boolean(true), name = String("end")}]"#;
-        let mesh = "{cells = [Integer(3), Integer(4)], degree = Integer(3)}";
-        assert_eq!(scene, format!("{{body = {bodies}, mesh = {mesh}}}"));
+        let found: Vec<_> = case.variants.iter().map(|v| (v.name.as_str(), v.energy_factor)).collect();
+        assert_eq!(found, [("a", Some(2.0)), ("b", Some(1.0)), ("c", None)]);
+    }
+
+    #[test]
+    fn a_case_stands_over_its_base_and_those_of_it_and_an_override_over_all() {
+        let bases = format!("{BASES}[upon]\nbase = \"bar\"\nlabel = \"upon\"\nscene.mesh.degree = 4\n");
+        for base in ["bar", "upon"] {
+            let text = format!("base = \"{base}\"\n[scene]\nmesh.degree = 3\nbody.1.name = \"end\"\n{CHECK}");
+            let case = read(&text, SETS, &bases).unwrap();
+            assert_eq!((case.label.as_str(), case.document.root.get("base")), (base, None));
+            let scene = case.scene_node().unwrap().canonical();
+            let bodies = r#"[{name = String("one")}, {frozen = Boolean(true), name = String("end")}]"#;
+            let mesh = "{cells = [Integer(3), Integer(4)], degree = Integer(3)}";
+            assert_eq!(scene, format!("{{body = {bodies}, mesh = {mesh}}}"));
+        }
     }
 
     #[test]
@@ -298,7 +351,7 @@ mod tests {
         let typing = BASES.replace("label", "lable");
         told(&based("bar", ""), SETS, &typing, &["bases.toml:2:1: lable", "did you mean \"label\"?"]);
         let nested = BASES.replace("label", "base");
-        told(&based("bar", ""), SETS, &nested, &["bases.toml:2:8: base", "a base within a base"]);
+        told(&based("bar", ""), SETS, &nested, &["bases.toml:2:8: base", "the base holds itself"]);
         let third = "[scene]\nbody.2.name = \"three\"\n";
         told(&based("bar", third), SETS, BASES, &["case.toml:6", "scene.body.2", "entries count from 0: 0 to 1"]);
     }

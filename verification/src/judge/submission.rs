@@ -17,7 +17,7 @@ use crate::scene::{Document, Problem, SceneFileError};
 const MOST_BYTES: u64 = 1 << 20;
 
 /// Who computed it, with what.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Code {
     /// Name of the code.
     pub name: String,

@@ -112,7 +112,7 @@ pub struct Balance {
 }
 
 /// What the result was held against.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ReferenceUsed {
     /// Folder and variant in the reference data, or the closed form.
     pub id: String,
@@ -123,7 +123,7 @@ pub struct ReferenceUsed {
 }
 
 /// The verdict on one submission.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Verdict {
     /// Folder, as given.
     pub folder: String,
@@ -179,14 +179,7 @@ impl Verdict {
             cost: submission.cost.clone(),
             reference,
             numerical_uncertainty: numerical_uncertainty.into(),
-            differences: Vec::new(),
-            findings: Vec::new(),
-            notes: Vec::new(),
-            quantities: Vec::new(),
-            events: Vec::new(),
-            balance: None,
-            outcome: Outcome::Diagnostic,
-            sentence: String::new(),
+            ..Self::default()
         }
     }
 

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use toml::Spanned;
 
 use super::quantity::Unit;
-use super::source_file::{BandEntry, SourceFile, ValueEntry};
+use super::source_file::{BandEntry, ValueEntry};
 use super::{Library, ReferenceBand, ReferenceError, ReferenceValue, Source};
 use crate::scene::units::UnitError;
 
@@ -48,7 +48,6 @@ pub(super) struct SourceReader {
     pub(super) folder: PathBuf,
     path: PathBuf,
     text: String,
-    pub(super) file: SourceFile,
     pub(super) source: Source,
 }
 
@@ -57,34 +56,23 @@ impl SourceReader {
         let path = folder.join(SOURCE);
         let text = fs::read_to_string(&path)
             .map_err(|e| ReferenceError::file(&path, e.to_string(), "give a text file in UTF-8"))?;
-        let file: SourceFile = toml::from_str(&text).map_err(|e| {
+        let mut source: Source = toml::from_str(&text).map_err(|e| {
             let line = line_of(&text, e.span().map_or(0, |s| s.start));
             let remedy = "see README.md of the reference data for the keys of source.toml";
             ReferenceError::at(&path, line, "TOML", e.message().trim(), remedy)
         })?;
-        if file.citation.as_ref().trim().is_empty() {
-            let line = line_of(&text, file.citation.span().start);
+        if source.citation.trim().is_empty() {
+            let line = 1 + text.lines().take_while(|line| !line.starts_with("citation")).count();
             return Err(ReferenceError::at(&path, line, "citation", "empty", "give the source of the numbers"));
         }
         let relative = folder.strip_prefix(root).unwrap_or(folder);
-        let id = relative.iter().map(|part| part.to_string_lossy()).collect::<Vec<_>>().join("/");
-        let source = Source {
-            id,
-            citation: file.citation.as_ref().clone(),
-            url: file.url.clone(),
-            obtained: file.obtained,
-            kind: file.kind,
-            model: file.model.clone(),
-            resolution: file.resolution.clone(),
-            remarks: file.remarks.clone(),
-            slips: file.slips.clone(),
-        };
-        Ok(Self { folder: folder.to_path_buf(), path, text, file, source })
+        source.id = relative.iter().map(|part| part.to_string_lossy()).collect::<Vec<_>>().join("/");
+        Ok(Self { folder: folder.to_path_buf(), path, text, source })
     }
 
     fn read(self, library: &mut Library) -> Result<(), ReferenceError> {
         self.check_picture_columns()?;
-        for entry in &self.file.curves {
+        for entry in &self.source.curves {
             let Some(curve) = self.curve(entry)? else { continue };
             if library.curve(&curve.id, &curve.quantity).is_some() {
                 let message = format!("a second curve of {:?} under {:?}", curve.quantity, curve.id);
@@ -93,12 +81,12 @@ impl SourceReader {
             }
             library.curves.push(curve);
         }
-        for entry in &self.file.values {
+        for entry in &self.source.values {
             let value = self.value(entry)?;
             self.check_new(entry, "[[value]] name", &value.name, library.value(&value.id, &value.name).is_some())?;
             library.values.push(value);
         }
-        for entry in &self.file.bands {
+        for entry in &self.source.bands {
             let band = self.band(entry)?;
             self.check_new(entry, "[[band]] name", &band.name, library.band(&band.id, &band.name).is_some())?;
             library.bands.push(band);

@@ -17,12 +17,12 @@ impl SourceReader {
         if self.source.obtained != Obtained::PictureOnly {
             return Ok(());
         }
-        for entry in &self.file.curves {
+        for entry in &self.source.curves {
             let path = self.folder.join(&entry.as_ref().file);
             if !path.exists() {
                 continue;
             }
-            let same_file = self.file.curves.iter().map(Spanned::as_ref).filter(|c| c.file == entry.as_ref().file);
+            let same_file = self.source.curves.iter().map(Spanned::as_ref).filter(|c| c.file == entry.as_ref().file);
             let known: Vec<&str> = same_file.flat_map(|c| [c.x.as_str(), c.y.as_str()]).collect();
             let names = self.table(&path)?.names;
             if let Some(stranger) = names.iter().find(|name| !known.contains(&name.as_str())) {

@@ -38,30 +38,41 @@ pub struct Slip {
     pub used: String,
 }
 
-/// The whole file.
-#[derive(Debug, Deserialize)]
+/// One `source.toml`.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct SourceFile {
-    pub(super) citation: Spanned<String>,
-    pub(super) url: Option<String>,
-    pub(super) obtained: Obtained,
-    pub(super) kind: ReferenceKind,
-    pub(super) model: String,
-    pub(super) resolution: String,
+pub struct Source {
+    /// Folder below the library's, with `/`: `estrada-2024/figure-3a`.
+    #[serde(skip)]
+    pub id: String,
+    /// Citation.
+    pub citation: String,
+    /// Address, where there is one.
+    pub url: Option<String>,
+    /// How the numbers were obtained.
+    pub obtained: Obtained,
+    /// Kind, for records.
+    pub kind: ReferenceKind,
+    /// What was modelled.
+    pub model: String,
+    /// How finely.
+    pub resolution: String,
+    /// What to know before comparing.
     #[serde(default)]
-    pub(super) remarks: Vec<String>,
+    pub remarks: Vec<String>,
+    /// Misprints, and what is used instead.
+    #[serde(default, rename = "slip")]
+    pub slips: Vec<Slip>,
     #[serde(default, rename = "curve")]
     pub(super) curves: Vec<Spanned<CurveEntry>>,
     #[serde(default, rename = "value")]
     pub(super) values: Vec<Spanned<ValueEntry>>,
     #[serde(default, rename = "band")]
     pub(super) bands: Vec<Spanned<BandEntry>>,
-    #[serde(default, rename = "slip")]
-    pub(super) slips: Vec<Slip>,
 }
 
 /// `[[curve]]`: two columns of a CSV file.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CurveEntry {
     pub(super) variant: Option<String>,
@@ -83,7 +94,7 @@ pub(super) struct CurveEntry {
 }
 
 /// `[[value]]`: a number.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ValueEntry {
     pub(super) name: String,
@@ -94,7 +105,7 @@ pub(super) struct ValueEntry {
 }
 
 /// `[[band]]`: a range.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct BandEntry {
     pub(super) name: String,

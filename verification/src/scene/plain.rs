@@ -42,9 +42,14 @@ impl PlainScene {
     /// A bar of unit modulus and density that does not contract sideways, between rollers, with p + 1 Gauss
     /// points per span.
     pub fn unit_bar(mesh: Mesh, mass: Mass) -> Self {
-        let material = Material { young_modulus: 1.0, poisson_ratio: 0.0, density: 1.0, fracture: None };
+        Self { mass, held: ROLLERS.to_vec(), ..Self::unit(mesh, 0.0) }
+    }
+
+    /// A free body of unit modulus and density, with p + 1 points.
+    pub fn unit(mesh: Mesh, poisson_ratio: f64) -> Self {
+        let material = Material { young_modulus: 1.0, poisson_ratio, density: 1.0, fracture: None };
         let points = mesh.degree[0] + 1;
-        Self { mass, held: ROLLERS.to_vec(), ..Self::free(mesh, material, points) }
+        Self::free(mesh, material, points)
     }
 
     /// The scene, in the total frame with small strains.

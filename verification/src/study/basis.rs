@@ -14,37 +14,24 @@ const KNOT_VECTORS: u64 = 20;
 const SPANS: usize = 12;
 const POINTS: usize = 50;
 
-pub(super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> super::Offered {
-    let mut offers = super::Offers::default();
+pub(super) fn study(_case: &Case, _scenes: &[CaseScene], findings: &mut Findings) -> Result<(), StudyError> {
     for degree in 1..=4 {
-        offers.bare(
-            &format!("p={degree}"),
-            [
-                "partition of unity, largest error",
-                "linear precision, largest error",
-                "gradients, largest error times span length",
-                "continuity at inner knots, largest jump",
-            ],
-        );
+        let quantities = [
+            ("partition of unity, largest error", None),
+            ("linear precision, largest error", None),
+            ("gradients, largest error times span length", None),
+            ("continuity at inner knots, largest jump", None),
+        ];
+        findings.measure(&format!("p={degree}"), quantities, || {
+            let mut worst = Worst::default();
+            for seed in 0..KNOT_VECTORS {
+                let space = SplineSpace::new(degree, &Random::scrambled(seed).knots(degree, SPANS, false));
+                worst.look(&space);
+            }
+            Ok([worst.unity, worst.linear, worst.gradient, worst.jump])
+        })?;
     }
-    Ok(offers)
-}
-
-pub(super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
-    let mut findings = Findings::default();
-    for degree in 1..=4 {
-        let mut worst = Worst::default();
-        for seed in 0..KNOT_VECTORS {
-            let space = SplineSpace::new(degree, &Random::scrambled(seed).knots(degree, SPANS, false));
-            worst.look(&space);
-        }
-        let variant = format!("p={degree}");
-        findings.add(&variant, "partition of unity, largest error", worst.unity, None);
-        findings.add(&variant, "linear precision, largest error", worst.linear, None);
-        findings.add(&variant, "gradients, largest error times span length", worst.gradient, None);
-        findings.add(&variant, "continuity at inner knots, largest jump", worst.jump, None);
-    }
-    Ok(findings)
+    Ok(())
 }
 
 #[derive(Default)]

@@ -15,26 +15,18 @@ use nalgebra::DVector;
 use super::{Case, CaseScene, Findings, StudyError, dense, other};
 use crate::extremes::larger;
 
-pub(super) fn offers(_case: &Case, scenes: &[CaseScene]) -> super::Offered {
-    let bare = &[
-        "constant stress xx, largest error at a point",
-        "constant stress yy, largest error at a point",
-        "constant stress xy, largest error at a point",
-    ];
-    Ok(super::Offers::of_scenes(scenes, &[], bare))
-}
-
-pub(super) fn study(_case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
-    let mut findings = Findings::default();
+pub(super) fn study(_case: &Case, scenes: &[CaseScene], findings: &mut Findings) -> Result<(), StudyError> {
     for scene in scenes {
-        let frame = TotalFrame::new(&scene.scene).map_err(|_| other("no equilibrium at rest"))?;
-        let patch_test = PatchTest::new(&frame)?;
-        for (name, stress) in [("xx", [1.0, 0.0, 0.0]), ("yy", [0.0, 1.0, 0.0]), ("xy", [0.0, 0.0, 1.0])] {
-            let error = patch_test.largest_stress_error(scene, stress);
-            findings.add(&scene.name, &format!("constant stress {name}, largest error at a point"), error, None);
-        }
+        let quantities = ["xx", "yy", "xy"];
+        let quantities = quantities.map(|name| (format!("constant stress {name}, largest error at a point"), None));
+        findings.measure(&scene.name, quantities, || {
+            let frame = TotalFrame::new(&scene.scene).map_err(|_| other("no equilibrium at rest"))?;
+            let patch_test = PatchTest::new(&frame)?;
+            let stresses = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+            Ok(stresses.map(|stress| patch_test.largest_stress_error(scene, stress)))
+        })?;
     }
-    Ok(findings)
+    Ok(())
 }
 
 struct PatchTest<'a> {

@@ -38,24 +38,6 @@ trait OnMesh {
     fn span_length(&self) -> f64;
 }
 
-pub(super) fn offers(case: &Case, _scenes: &[CaseScene]) -> super::Offered {
-    let (setup, problem, norms) = problem_of(case)?;
-    let mut offers = super::Offers::default();
-    let refined = refined(setup);
-    for (n, &degree) in setup.degrees.iter().enumerate() {
-        for variant in variants(setup) {
-            let name = curve_name(setup, n, variant);
-            for &(norm, below) in &norms {
-                offers.curve(&name, refined, &[norm], &[theory(setup, &problem, degree, below)]);
-                if setup.frame == Frame::Total {
-                    offers.bare(&name, [over_best(norm)]);
-                }
-            }
-        }
-    }
-    Ok(offers)
-}
-
 /// Norms in words, and how many orders an error in them stands below that of the displacement.
 type Norms = Vec<(&'static str, usize)>;
 
@@ -77,24 +59,22 @@ fn refined(setup: &ConvergenceSetup) -> Refined {
     }
 }
 
-fn over_best(norm: &str) -> String {
-    format!("{norm} over that of the L2 projection")
-}
-
-pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
+pub(super) fn study(case: &Case, _scenes: &[CaseScene], findings: &mut Findings) -> Result<(), StudyError> {
     let (setup, problem, norms) = problem_of(case)?;
-    let mut findings = Findings::default();
     let mut curves = Vec::new();
     for (n, &degree) in setup.degrees.iter().enumerate() {
         for variant in variants(setup) {
             let orders = norms.iter().map(|&(_, below)| theory(setup, &problem, degree, below)).collect();
             let name = curve_name(setup, n, variant);
-            let (levels, best) = Meshes { setup, problem: &problem }.levels(CurveKey { n, variant })?;
-            for (index, best) in best.into_iter().enumerate() {
-                let error = levels.last().map_or(f64::NAN, |level| level.errors[index]);
-                findings.add(&name, &over_best(norms[index].0), error / best, None);
+            let meshes = Meshes { setup, problem: &problem };
+            let found = findings.compute(|| meshes.levels(CurveKey { n, variant }))?;
+            for (index, (norm, _)) in norms.iter().enumerate().filter(|_| setup.frame == Frame::Total) {
+                let over_best = found
+                    .as_ref()
+                    .map(|(levels, best)| levels.last().map_or(f64::NAN, |level| level.errors[index]) / best[index]);
+                findings.add(&name, &format!("{norm} over that of the L2 projection"), over_best, None);
             }
-            curves.push(Curve { name, levels, orders });
+            curves.push(Curve { name, levels: found.unwrap_or_default().0, orders });
         }
     }
     let norm = |&(quantity, _): &(&str, usize)| Norm { quantity: quantity.into(), unit: "1".into(), floor: FLOOR };
@@ -109,8 +89,8 @@ pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stud
         norms: norms.iter().map(norm).collect(),
         curves,
     };
-    study.add_to(&mut findings);
-    Ok(findings)
+    study.add_to(findings);
+    Ok(())
 }
 
 /// What distinguishes the curves of one degree.

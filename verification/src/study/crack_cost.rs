@@ -18,7 +18,7 @@ use fisura::phase_field::assembly::{Constant, Integrand, PointCoefficients, add_
 use fisura::scene::{Layout, Mass, Mesh};
 use fisura::splines::patch::Patch;
 
-use super::{Case, CaseScene, Findings, Offered, Offers, StudyError, other};
+use super::{Case, CaseScene, Findings, StudyError, other};
 use crate::record::{Reference, ReferenceKind};
 use crate::scene::plain::PlainScene;
 
@@ -45,22 +45,17 @@ const ROWS: [(&str, Rows); 3] = [
 /// Sets of rows; the cheapest counts.
 type Rows = fn(usize) -> Vec<Vec<isize>>;
 
-pub(super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> Offered {
-    let mut offers = Offers::default();
-    all().for_each(|setting| offers.held(&setting.variant(), [QUANTITY]));
-    Ok(offers)
-}
-
-pub(super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
-    let mut findings = Findings::default();
+pub(super) fn study(_case: &Case, _scenes: &[CaseScene], findings: &mut Findings) -> Result<(), StudyError> {
     for setting in all() {
-        let mut cheapest = f64::INFINITY;
-        for rows in (setting.rows)(setting.points) {
-            cheapest = crate::extremes::smaller(cheapest, setting.cost(&rows)?);
-        }
-        findings.add(&setting.variant(), QUANTITY, cheapest, setting.reference());
+        findings.measure(&setting.variant(), [(QUANTITY, setting.reference())], || {
+            let mut cheapest = f64::INFINITY;
+            for rows in (setting.rows)(setting.points) {
+                cheapest = crate::extremes::smaller(cheapest, setting.cost(&rows)?);
+            }
+            Ok([cheapest])
+        })?;
     }
-    Ok(findings)
+    Ok(())
 }
 
 /// Broken rows on one mesh.

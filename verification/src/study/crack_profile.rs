@@ -21,34 +21,22 @@ const LENGTH: f64 = 1.0;
 const HALF_WIDTH: usize = 24;
 const HEIGHT: f64 = 2.0;
 
-pub(super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> super::Offered {
-    let mut offers = super::Offers::default();
+pub(super) fn study(_case: &Case, _scenes: &[CaseScene], findings: &mut Findings) -> Result<(), StudyError> {
     for degree in [2, 3] {
         for per_length in [1, 2] {
+            let quantities = [
+                ("surface energy of the crack over Gc", exact(1.0, "AT2 in one dimension")),
+                ("phase field, largest error at a control line of its knots", None),
+            ];
             let variant = format!("p={degree}, h=l0/{per_length}");
-            offers.held(&variant, ["surface energy of the crack over Gc"]);
-            offers.bare(&variant, ["phase field, largest error at a control line of its knots"]);
+            findings.measure(&variant, quantities, || crack(degree, per_length))?;
         }
     }
-    Ok(offers)
-}
-
-pub(super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
-    let mut findings = Findings::default();
-    for degree in [2, 3] {
-        for per_length in [1, 2] {
-            let (energy, error) = crack(degree, per_length)?;
-            let variant = format!("p={degree}, h=l0/{per_length}");
-            let one = exact(1.0, "AT2 in one dimension");
-            findings.add(&variant, "surface energy of the crack over Gc", energy, one);
-            findings.add(&variant, "phase field, largest error at a control line of its knots", error, None);
-        }
-    }
-    Ok(findings)
+    Ok(())
 }
 
 /// Energy per unit of length over Gc, and the largest error of c at a knot.
-fn crack(degree: usize, per_length: usize) -> Result<(f64, f64), StudyError> {
+fn crack(degree: usize, per_length: usize) -> Result<[f64; 2], StudyError> {
     let half = HALF_WIDTH * per_length;
     let at = |i: usize| (i as f64 - half as f64) * LENGTH / per_length as f64;
     let mut x = vec![at(0); degree];
@@ -80,5 +68,5 @@ fn crack(degree: usize, per_length: usize) -> Result<(f64, f64), StudyError> {
         let value = patch.evaluate(&phase, [at(i), 0.5 * HEIGHT]).map_or(f64::NAN, |v| v.value);
         (value - exact(at(i))).abs()
     };
-    Ok((energy, largest((0..=2 * half).map(error))))
+    Ok([energy, largest((0..=2 * half).map(error))])
 }

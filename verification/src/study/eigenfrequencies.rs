@@ -22,44 +22,26 @@ const HEIGHT: f64 = 0.05;
 /// squares.
 const FLOOR: f64 = 5e-12;
 
-pub(super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> super::Offered {
-    let mut offers = super::Offers::default();
-    for (words, consistent) in [("consistent", true), ("lumped", false)] {
-        for degree in 1..=3 {
-            let name = format!("{words}, p={degree}");
-            let spans = MESHES[MESHES.len() - 1];
-            offers.bare(
-                &name,
-                (1..=MODES).map(|mode| format!("relative frequency error of mode {mode} on {spans} spans")),
-            );
-            let order = if consistent { 2.0 * f64::from(degree) } else { 2.0 };
-            for mode in 1..=MODES {
-                let norm = format!("frequency error of mode {mode}");
-                offers.curve(&name, Refined::Mesh { dimensions: 1 }, &[&norm], &[Some(order)]);
-            }
-        }
-    }
-    Ok(offers)
-}
-
-pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
-    let mut findings = Findings::default();
+pub(super) fn study(case: &Case, _scenes: &[CaseScene], findings: &mut Findings) -> Result<(), StudyError> {
     let mut curves = Vec::new();
     for mass in [Mass::Consistent, Mass::Lumped] {
         for degree in 1..=3 {
             let words = if mass == Mass::Consistent { "consistent" } else { "lumped" };
             let name = format!("{words}, p={degree}");
             let mut levels = Vec::new();
+            let mut finest = None;
             for spans in MESHES {
-                let (errors, unknowns) = relative_errors(mass, degree, spans)?;
-                if spans == MESHES[MESHES.len() - 1] {
-                    for (mode, error) in errors.iter().enumerate() {
-                        let quantity = format!("relative frequency error of mode {} on {spans} spans", mode + 1);
-                        findings.add(&name, &quantity, *error, None);
-                    }
-                }
-                let errors = errors.iter().map(|e| e.abs()).collect();
-                levels.push(Level { h: 1.0 / spans as f64, unknowns, seconds: 0.0, errors });
+                let Some((errors, unknowns)) = findings.compute(|| relative_errors(mass, degree, spans))? else {
+                    break;
+                };
+                let sizes = errors.iter().map(|e| e.abs()).collect();
+                levels.push(Level { h: 1.0 / spans as f64, unknowns, seconds: 0.0, errors: sizes });
+                finest = Some(errors);
+            }
+            let spans = MESHES[MESHES.len() - 1];
+            for mode in 1..=MODES {
+                let quantity = format!("relative frequency error of mode {mode} on {spans} spans");
+                findings.add(&name, &quantity, finest.as_ref().map(|errors| errors[mode - 1]), None);
             }
             let order = if mass == Mass::Consistent { 2.0 * degree as f64 } else { 2.0 };
             curves.push(Curve { name, levels, orders: vec![Some(order); MODES] });
@@ -77,8 +59,8 @@ pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stud
         norms: (1..=MODES).map(norm).collect(),
         curves,
     };
-    study.add_to(&mut findings);
-    Ok(findings)
+    study.add_to(findings);
+    Ok(())
 }
 
 /// Relative errors, with sign, of the lowest frequencies, and the number of unknowns.

@@ -35,39 +35,30 @@ use crate::record::{Axis, CurveStyle, Figure, FigureBody};
 /// Strains looked at, over the strain at the peak.
 const STRAINS: usize = 40;
 const FURTHEST: f64 = 4.0;
-const STRENGTHS: &str = "tensile over compressive strength, largest difference from closed form";
 
-pub(super) fn offers(_case: &Case, scenes: &[CaseScene]) -> super::Offered {
-    let held = &["strain at the peak over closed form", "stress at the peak over closed form"];
-    let bare = &["phase field, largest error", "stress, largest error over the peak stress", STRENGTHS];
-    Ok(super::Offers::of_scenes(scenes, held, bare))
-}
-
-pub(super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
-    let mut findings = Findings::default();
+pub(super) fn study(case: &Case, scenes: &[CaseScene], findings: &mut Findings) -> Result<(), StudyError> {
+    let stem = format!("{}-{}", case.suite, case.name);
+    let mut tables = Vec::new();
     for scene in scenes {
-        let (table, error) = loading(scene)?;
-        findings.add(&scene.name, "phase field, largest error", error, None);
-        let stress = largest(table.columns[1].iter().zip(&table.columns[2]).map(|(a, b)| (a - b).abs()));
-        findings.add(&scene.name, "stress, largest error over the peak stress", stress, None);
-        let (peak_strain, peak_stress) = peak(&table);
-        findings.add(
-            &scene.name,
-            "strain at the peak over closed form",
-            peak_strain,
-            exact(1.0, "H = Gc/(12 l0), with AT1 3 Gc/(32 l0), with a cohesive crack ft^2/(2 E)"),
-        );
-        let strengths = strengths(&scene.scene)?;
-        findings.add(&scene.name, STRENGTHS, strengths, None);
-        let source = exact(1.0, "9/16 of M times that strain with AT2, else all");
-        findings.add(&scene.name, "stress at the peak over closed form", peak_stress, source);
-        if findings.series.is_empty() {
-            let stem = format!("{}-{}", case.suite, case.name);
-            findings.figures.push(figure(case, &stem));
-            findings.series.push((stem, table));
-        }
+        let strain = "H = Gc/(12 l0), with AT1 3 Gc/(32 l0), with a cohesive crack ft^2/(2 E)";
+        let quantities = [
+            ("phase field, largest error", None),
+            ("stress, largest error over the peak stress", None),
+            ("strain at the peak over closed form", exact(1.0, strain)),
+            ("tensile over compressive strength, largest difference from closed form", None),
+            ("stress at the peak over closed form", exact(1.0, "9/16 of M times that strain with AT2, else all")),
+        ];
+        findings.measure(&scene.name, quantities, || {
+            let (table, error) = loading(scene)?;
+            let stress = largest(table.columns[1].iter().zip(&table.columns[2]).map(|(a, b)| (a - b).abs()));
+            let (peak_strain, peak_stress) = peak(&table);
+            tables.push((stem.clone(), table));
+            Ok([error, stress, peak_strain, strengths(&scene.scene)?, peak_stress])
+        })?;
     }
-    Ok(findings)
+    findings.figures.push(figure(case, &stem));
+    findings.series.extend(tables.into_iter().take(1));
+    Ok(())
 }
 
 /// Strain, stress, and both against closed forms; and the largest error of c at a control point.

@@ -7,9 +7,9 @@
 
 use std::collections::BTreeMap;
 
-use fisura::scene::{Material, Mesh, Scene};
+use fisura::scene::{Mesh, Scene};
 
-use super::{Findings, Offered, Offers, StudyError, exact, other};
+use super::{Findings, StudyError, exact, other};
 use crate::case::expand::CaseScene;
 use crate::case::{Case, Check};
 use crate::extremes::largest;
@@ -21,9 +21,6 @@ use crate::scene::plain::PlainScene;
 use crate::study::orders::observed_order;
 
 /// Quantities, and the variants of the last.
-const WRONG: &str = "wrong verdicts on known values";
-const RIGHT: &str = "right verdicts on known values";
-const MEASURE: &str = "measure of a known history, error";
 const MEASURES: [&str; 8] = [
     "drift downwards",
     "fall over two rows",
@@ -35,30 +32,31 @@ const MEASURES: [&str; 8] = [
     "largest with a gap",
 ];
 
-pub(super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> Offered {
-    let mut offers = Offers::default();
-    offers.held("", [WRONG, RIGHT]);
-    MEASURES.iter().for_each(|name| offers.held(name, [MEASURE]));
-    Ok(offers)
-}
-
-pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
-    let mut findings = Findings::default();
+pub(super) fn study(case: &Case, _scenes: &[CaseScene], findings: &mut Findings) -> Result<(), StudyError> {
     let right = verdicts(&case.checks[0]);
-    let wrong = right.iter().filter(|right| !**right).count();
-    if !right.iter().any(|right| *right)
-        || of_accept(bounds(None, Some(0.0))).status_of(Some(1.0)) != Status::Fail && wrong > 0
-    {
-        return Err(other(format!("{wrong} verdicts are wrong, but the judge passes this")));
+    let quantities = [
+        ("wrong verdicts on known values", by_hand(0.0)),
+        ("right verdicts on known values", by_hand(right.len() as f64)),
+    ];
+    findings.measure("", quantities, || {
+        let wrong = right.iter().filter(|right| !**right).count();
+        if !right.iter().any(|right| *right)
+            || of_accept(bounds(None, Some(0.0))).status_of(Some(1.0)) != Status::Fail && wrong > 0
+        {
+            return Err(other(format!("{wrong} verdicts are wrong, but the judge passes this")));
+        }
+        Ok([wrong as f64, (right.len() - wrong) as f64])
+    })?;
+    let found = findings.compute(|| known_measures(case))?;
+    for (index, name) in MEASURES.into_iter().enumerate() {
+        let error = found.map(|found| {
+            let (found, expected) = found[index];
+            let error = if expected.is_nan() && found.is_nan() { 0.0 } else { (found - expected).abs() };
+            if error.is_nan() { 1.0 } else { error }
+        });
+        findings.add(name, "measure of a known history, error", error, by_hand(0.0));
     }
-    findings.add("", WRONG, wrong as f64, by_hand(0.0));
-    findings.add("", RIGHT, (right.len() - wrong) as f64, by_hand(right.len() as f64));
-    for (name, (found, expected)) in MEASURES.into_iter().zip(known_measures(case)?) {
-        let error = if expected.is_nan() && found.is_nan() { 0.0 } else { (found - expected).abs() };
-        let counted = if error.is_nan() { 1.0 } else { error };
-        findings.add(name, MEASURE, counted, by_hand(0.0));
-    }
-    Ok(findings)
+    Ok(())
 }
 
 fn by_hand(value: f64) -> Option<Reference> {
@@ -216,6 +214,6 @@ fn known_measures(case: &Case) -> Result<[(f64, f64); 8], StudyError> {
 
 /// Any scene: the measures above do not look at it.
 fn scene() -> Scene {
-    let material = Material { young_modulus: 1.0, poisson_ratio: 0.0, density: 1.0, fracture: None };
-    PlainScene::free(Mesh::uniform([1; 2], [0.0; 2], [1.0; 2], [1; 2]), material, 1).scene()
+    let mesh = Mesh::uniform([1; 2], [0.0; 2], [1.0; 2], [1; 2]);
+    PlainScene { points: 1, ..PlainScene::unit(mesh, 0.0) }.scene()
 }

@@ -32,52 +32,32 @@ const FLOOR: f64 = 1e-13;
 
 const NORMS: [&str; 2] = ["equilibrium residual of a linear field", "work of the residual on a smooth field"];
 
-pub(super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> super::Offered {
-    let mut offers = super::Offers::default();
-    for (_, words, _) in FAMILIES {
-        for degree in [2, 3] {
-            let name = format!("{words}, p={degree}");
-            offers.bare(&name, ["linear field, largest error at a point", "its gradient, largest error at a point"]);
-            let residual = |points| format!("equilibrium residual of a linear field on 8 or 9 spans, {points} points");
-            offers.bare(&name, ["p + 6", "3"].map(residual));
-            for points in [2, 3, 4] {
-                let name = format!("{name}, {points}x{points} points");
-                offers.curve(&name, Refined::Mesh { dimensions: 2 }, &NORMS, &[Some(1.0); 2]);
-            }
-        }
-    }
-    Ok(offers)
-}
-
-pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
-    let mut findings = Findings::default();
+pub(super) fn study(case: &Case, _scenes: &[CaseScene], findings: &mut Findings) -> Result<(), StudyError> {
     let mut curves = Vec::new();
     for (family, words, cells) in FAMILIES {
         for degree in [2, 3] {
             let on = |spans: usize| patch(family, degree, spans);
-            let name = format!("{words}, p={degree}");
-            let [value, gradient] = interpolation_errors(&on(cells[1])?);
-            findings.add(&name, "linear field, largest error at a point", value, None);
-            findings.add(&name, "its gradient, largest error at a point", gradient, None);
-            // Random families have a multiple of three spans.
-            let fine = on(if family == PatchFamily::Random { 9 } else { 8 })?;
-            let quantity =
-                |points: &str| format!("equilibrium residual of a linear field on 8 or 9 spans, {points} points");
-            findings.add(&name, &quantity("p + 6"), residual(&fine, degree + 6)[0], None);
-            findings.add(&name, &quantity("3"), residual(&fine, 3)[0], None);
+            let quantities = [
+                ("linear field, largest error at a point", None),
+                ("its gradient, largest error at a point", None),
+                ("equilibrium residual of a linear field on 8 or 9 spans, p + 6 points", None),
+                ("equilibrium residual of a linear field on 8 or 9 spans, 3 points", None),
+            ];
+            findings.measure(&format!("{words}, p={degree}"), quantities, || {
+                let [value, gradient] = interpolation_errors(&on(cells[1])?);
+                // Random families have a multiple of three spans.
+                let fine = on(if family == PatchFamily::Random { 9 } else { 8 })?;
+                Ok([value, gradient, residual(&fine, degree + 6)[0], residual(&fine, 3)[0]])
+            })?;
             for points in [2, 3, 4] {
-                let mut levels = Vec::new();
-                for spans in cells {
+                let level = |spans: usize| {
                     crate::watch::check()?;
                     let patch = on(spans)?;
                     let unknowns = 2 * patch.control_grid().columns * patch.control_grid().rows;
-                    levels.push(Level {
-                        h: 1.0 / spans as f64,
-                        unknowns,
-                        seconds: 0.0,
-                        errors: residual(&patch, points).to_vec(),
-                    });
-                }
+                    let errors = residual(&patch, points).to_vec();
+                    Ok(Level { h: 1.0 / spans as f64, unknowns, seconds: 0.0, errors })
+                };
+                let levels = findings.compute(|| cells.into_iter().map(level).collect())?.unwrap_or_default();
                 let name = format!("{words}, p={degree}, {points}x{points} points");
                 curves.push(Curve {
                     name,
@@ -102,8 +82,8 @@ pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stud
         norms: NORMS.map(|quantity| Norm { quantity: quantity.into(), unit: "1".into(), floor: FLOOR }).to_vec(),
         curves,
     };
-    study.add_to(&mut findings);
-    Ok(findings)
+    study.add_to(findings);
+    Ok(())
 }
 
 fn patch(family: PatchFamily, degree: usize, spans: usize) -> Result<Patch, StudyError> {

@@ -22,49 +22,38 @@ const FRACTIONS: [f64; 6] = [0.0, 0.11, 0.35, 0.5, 0.72, 1.0];
 const STEP: f64 = 3e-6;
 const ARC_POINTS: usize = 1000;
 
-pub(super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> super::Offered {
-    let mut offers = super::Offers::default();
+pub(super) fn study(_case: &Case, _scenes: &[CaseScene], findings: &mut Findings) -> Result<(), StudyError> {
     for degree in 1..=4 {
         let variant = format!("p={degree}");
-        offers.bare(
-            &variant,
-            [
-                "partition of unity, largest error",
-                "sum of gradients, largest error times span length",
-                "gradients against differences, largest error times span length",
-                "linear field, largest error",
-                "gradient of a linear field, largest error times length",
-                "knot insertion, largest change of the geometry",
-                "equal weights against the general path, largest difference",
-                "affine grid against the general path, largest difference",
-                "inverse map, largest distance",
-                "patches with weights tamed to keep them unfolded",
-            ],
-        );
+        let found = findings.compute(|| random_patches(degree))?;
+        let mut add = |quantity: &str, value: fn(&Worst) -> f64| {
+            findings.add(&variant, quantity, found.as_ref().map(value), None);
+        };
+        add("partition of unity, largest error", |worst| worst.unity);
+        add("sum of gradients, largest error times span length", |worst| worst.gradient_sum);
+        add("gradients against differences, largest error times span length", |worst| worst.difference);
+        add("linear field, largest error", |worst| worst.linear);
+        add("gradient of a linear field, largest error times length", |worst| worst.linear_gradient);
+        add("knot insertion, largest change of the geometry", |worst| worst.insertion);
         if degree < 4 {
-            offers.bare(&variant, ["degree elevation, largest change of the geometry"]);
+            add("degree elevation, largest change of the geometry", |worst| worst.elevation);
         }
+        add("equal weights against the general path, largest difference", |worst| worst.equal_weights);
+        add("affine grid against the general path, largest difference", |worst| worst.affine);
+        add("inverse map, largest distance", |worst| worst.inverse);
+        add("patches with weights tamed to keep them unfolded", |worst| f64::from(worst.tamed));
         if degree > 1 {
             let arcs = ["quarter annulus", "refined quarter annulus"];
-            offers.bare(&variant, arcs.map(|name| format!("{name}, largest relative error of a radius")));
+            let quantities = arcs.map(|name| (format!("{name}, largest relative error of a radius"), None));
+            findings.measure(&variant, quantities, || circles(degree).map_err(other))?;
         }
     }
-    Ok(offers)
-}
-
-pub(super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
-    let mut findings = Findings::default();
-    for degree in 1..=4 {
-        random_patches(degree, &mut findings)?;
-    }
-    circles(&mut findings).map_err(other)?;
-    Ok(findings)
+    Ok(())
 }
 
 /// Degree p in the first direction, 1 + p mod 4 in the second, so that every degree meets another.
-fn random_patches(degree: usize, findings: &mut Findings) -> Result<(), StudyError> {
+fn random_patches(degree: usize) -> Result<Worst, StudyError> {
     let mut worst = Worst::default();
-    let mut tamed = 0;
     for seed in 0..PATCHES {
         crate::watch::check()?;
         let mut random = Random::scrambled(seed + 1000 * degree as u64);
@@ -75,28 +64,13 @@ fn random_patches(degree: usize, findings: &mut Findings) -> Result<(), StudyErr
         let weights: Vec<f64> = (0..count).map(|_| 10f64.powf(2.0 * random.unit() - 1.0)).collect();
         worst.look_at_basis(&spaces, &weights);
         let (patch, tame) = bent(&spaces, &weights).map_err(other)?;
-        tamed += usize::from(tame < 1.0);
+        worst.tamed += u32::from(tame < 1.0);
         worst.look_at_geometry(&patch);
         worst.look_at_refinement(&patch, &mut random).map_err(other)?;
         worst.look_at_fast_paths(&spaces).map_err(other)?;
         worst.look_at_inverse_map(&patch, &mut random).map_err(other)?;
     }
-    let variant = format!("p={degree}");
-    let mut add = |quantity: &str, value: f64| findings.add(&variant, quantity, value, None);
-    add("partition of unity, largest error", worst.unity);
-    add("sum of gradients, largest error times span length", worst.gradient_sum);
-    add("gradients against differences, largest error times span length", worst.difference);
-    add("linear field, largest error", worst.linear);
-    add("gradient of a linear field, largest error times length", worst.linear_gradient);
-    add("knot insertion, largest change of the geometry", worst.insertion);
-    if degree < 4 {
-        add("degree elevation, largest change of the geometry", worst.elevation);
-    }
-    add("equal weights against the general path, largest difference", worst.equal_weights);
-    add("affine grid against the general path, largest difference", worst.affine);
-    add("inverse map, largest distance", worst.inverse);
-    add("patches with weights tamed to keep them unfolded", tamed as f64);
-    Ok(())
+    Ok(worst)
 }
 
 /// Square with bent edges on the Greville abscissae, and the factor by which bend and weights were tamed.
@@ -118,23 +92,16 @@ fn bent(spaces: &[SplineSpace; 2], weights: &[f64]) -> Result<(NurbsPatch, f64),
     }
 }
 
-/// Quarter annuli of degree 2, 3 and 4 along the arc, as built or raised, and with knots inserted.
-fn circles(findings: &mut Findings) -> Result<(), NurbsError> {
+/// Errors of a quarter annulus of a degree along the arc, as built or raised, and with knots inserted.
+fn circles(degree: usize) -> Result<[f64; 2], NurbsError> {
     let mut patch = NurbsPatch::quarter_annulus(1.0, 2.0)?;
-    for degree in 2..=4 {
-        if degree > 2 {
-            patch = patch.elevate(1)?;
-        }
-        let mut random = Random::scrambled(degree);
-        let new: Vec<f64> = (0..20).map(|_| random.unit()).collect();
-        let refined = patch.insert_knots(1, &new)?.insert_knots(0, &new)?;
-        let variant = format!("p={degree}");
-        for (name, patch) in [("quarter annulus", &patch), ("refined quarter annulus", &refined)] {
-            let quantity = format!("{name}, largest relative error of a radius");
-            findings.add(&variant, &quantity, off_circle(patch), None);
-        }
+    for _ in 2..degree {
+        patch = patch.elevate(1)?;
     }
-    Ok(())
+    let mut random = Random::scrambled(degree as u64);
+    let new: Vec<f64> = (0..20).map(|_| random.unit()).collect();
+    let refined = patch.insert_knots(1, &new)?.insert_knots(0, &new)?;
+    Ok([off_circle(&patch), off_circle(&refined)])
 }
 
 /// Largest relative error of the radius on the arcs of a quarter annulus of radii 1 and 2.
@@ -200,6 +167,7 @@ struct Worst {
     equal_weights: f64,
     affine: f64,
     inverse: f64,
+    tamed: u32,
 }
 
 impl Worst {

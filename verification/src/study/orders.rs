@@ -147,11 +147,13 @@ impl Curve {
 }
 
 impl Convergence {
-    /// Hands measurements, series and figures over to the findings of a study.
+    /// Hands measurements, series and figures over to the findings of a study; measurements alone to a plan.
     pub fn add_to(&self, findings: &mut Findings) {
         findings.measurements.extend(self.measurements());
-        findings.series.extend(self.series());
-        findings.figures.extend(self.figures());
+        if !findings.plan {
+            findings.series.extend(self.series());
+            findings.figures.extend(self.figures());
+        }
     }
 
     /// Per curve and norm: `order of the <quantity>`, with theory as its reference, and
@@ -164,7 +166,7 @@ impl Convergence {
                 let theory = |value| Reference::at_least(value, ReferenceKind::Theory, &self.theory);
                 measurements.push(Measurement {
                     variant: curve.name.clone(),
-                    quantity: Norm::order_of(&norm.quantity),
+                    quantity: format!("order of the {}", norm.quantity),
                     unit: "1".into(),
                     value: observed_order(&levels, norm.floor),
                     reference: curve.orders[index].map(theory),
@@ -235,11 +237,6 @@ impl Convergence {
 }
 
 impl Norm {
-    /// The quantity of its observed order.
-    pub fn order_of(quantity: &str) -> String {
-        format!("order of the {quantity}")
-    }
-
     /// Column of the error in series: `displacement_error_in_l2`.
     pub fn column(&self) -> String {
         words(&self.quantity, "_")
@@ -262,7 +259,7 @@ impl Refined {
     }
 
     /// The quantity of its last error.
-    pub fn at_the_finest(self, quantity: &str) -> String {
+    fn at_the_finest(self, quantity: &str) -> String {
         let finest = match self {
             Self::Mesh { .. } => "on the finest mesh",
             Self::TimeStep => "with the smallest step",

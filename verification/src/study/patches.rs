@@ -85,17 +85,9 @@ fn refined(patch: &NurbsPatch, degree: usize, cells: usize) -> Result<NurbsPatch
 /// A biquadratic piece with curved sides, polynomial.
 fn bent() -> Result<NurbsPatch, NurbsError> {
     let piece: &[f64] = &[0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
-    let points = vec![
-        [0.0, 0.0],
-        [0.5, 0.15],
-        [1.0, 0.0],
-        [-0.1, 0.4],
-        [0.55, 0.45],
-        [1.15, 0.35],
-        [0.1, 0.8],
-        [0.5, 0.7],
-        [1.0, 0.9],
-    ];
+    let x = [0.0, 0.5, 1.0, -0.1, 0.55, 1.15, 0.1, 0.5, 1.0];
+    let y = [0.0, 0.15, 0.0, 0.4, 0.45, 0.35, 0.8, 0.7, 0.9];
+    let points = x.into_iter().zip(y).map(|(x, y)| [x, y]).collect();
     NurbsPatch::new([2, 2], [piece, piece], points, vec![1.0; 9])
 }
 

@@ -29,40 +29,21 @@ const WAVES: usize = 41;
 const START: f64 = 1.0;
 const FLIGHT: f64 = 1.0;
 
-pub(super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> super::Offered {
-    let mut offers = super::Offers::default();
-    for degree in [2, 3] {
-        for word in ["strain", "stress"] {
-            let variant = format!("p={degree}, plane {word}");
-            offers.held(&variant, ["speed of a dilatational pulse over c_d", "speed of a Rayleigh pulse over c_R"]);
-        }
-    }
-    Ok(offers)
-}
-
-pub(super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
-    let mut findings = Findings::default();
+pub(super) fn study(_case: &Case, _scenes: &[CaseScene], findings: &mut Findings) -> Result<(), StudyError> {
     for degree in [2, 3] {
         for (plane, word) in [(Plane::Strain, "strain"), (Plane::Stress, "stress")] {
             let speeds = Speeds::new(plane);
             let variant = format!("p={degree}, plane {word}");
-            let ratio = dilatational(degree, plane, &speeds)?;
-            findings.add(
-                &variant,
-                "speed of a dilatational pulse over c_d",
-                ratio,
-                exact(1.0, "sqrt((lam* + 2 mu)/rho)"),
-            );
-            let ratio = rayleigh(degree, plane, &speeds)?;
-            findings.add(
-                &variant,
-                "speed of a Rayleigh pulse over c_R",
-                ratio,
-                exact(1.0, "root of Rayleigh's equation"),
-            );
+            let quantities = [
+                ("speed of a dilatational pulse over c_d", exact(1.0, "sqrt((lam* + 2 mu)/rho)")),
+                ("speed of a Rayleigh pulse over c_R", exact(1.0, "root of Rayleigh's equation")),
+            ];
+            findings.measure(&variant, quantities, || {
+                Ok([dilatational(degree, plane, &speeds)?, rayleigh(degree, plane, &speeds)?])
+            })?;
         }
     }
-    Ok(findings)
+    Ok(())
 }
 
 /// Speeds of dilatational, shear and Rayleigh waves, m/s.

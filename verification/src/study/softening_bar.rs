@@ -14,15 +14,11 @@ use fisura::splines::patch::Patch;
 
 use super::charts::{chart, curve};
 use super::scene::series_stem;
-use super::{Case, CaseScene, Findings, Offered, Offers, StudyError, exact, other};
+use super::{Case, CaseScene, Findings, StudyError, exact, other};
 use crate::exact::cohesive::CohesiveLaw;
 use crate::extremes::{larger, largest};
 use crate::output::history::Table;
 use crate::record::{CurveStyle, Figure};
-
-const STRENGTH: &str = "largest stress over the strength";
-const ERROR: &str = "stress, largest difference from the law over the strength, where spans resolve it";
-const ENERGY: &str = "surface energy of the broken bar over Gc";
 
 /// Number of elongations: damage that an iteration makes too large stays, so they are small. Every so many
 /// are a row.
@@ -36,28 +32,29 @@ const OPEN: f64 = 0.02;
 const SETTLED: f64 = 1e-6;
 const MOST_ITERATIONS: usize = 3000;
 
-pub(super) fn offers(_case: &Case, scenes: &[CaseScene]) -> Offered {
-    Ok(Offers::of_scenes(scenes, &[STRENGTH, ENERGY], &[ERROR]))
-}
-
-pub(super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
-    let mut findings = Findings::default();
+pub(super) fn study(case: &Case, scenes: &[CaseScene], findings: &mut Findings) -> Result<(), StudyError> {
+    let stem = series_stem(case, "bar");
+    let mut tables = Vec::new();
     for scene in scenes {
-        let bar = Bar::new(scene)?;
-        let Pulled { table, strength, energy } = bar.pull()?;
-        let [openings, stresses, law] = [0, 1, 2].map(|column| table.columns[column].iter().copied());
-        findings.add(&scene.name, STRENGTH, strength, exact(1.0, "the tensile strength"));
-        let resolved = bar.law.stress(1.0 - bar.span / bar.fracture.length_scale);
-        let rows = openings.zip(stresses.zip(law)).filter(|(opening, (_, law))| *opening > OPEN && *law > resolved);
-        findings.add(&scene.name, ERROR, largest(rows.map(|(_, (found, law))| (found - law).abs())), None);
-        findings.add(&scene.name, ENERGY, energy, exact(1.0, "a cohesive crack in the limit of small spans"));
-        if findings.series.is_empty() {
-            let stem = series_stem(case, "bar");
-            findings.figures.push(figure(case, &stem));
-            findings.series.push((stem, table));
-        }
+        let quantities = [
+            ("largest stress over the strength", exact(1.0, "the tensile strength")),
+            ("stress, largest difference from the law over the strength, where spans resolve it", None),
+            ("surface energy of the broken bar over Gc", exact(1.0, "a cohesive crack in the limit of small spans")),
+        ];
+        findings.measure(&scene.name, quantities, || {
+            let bar = Bar::new(scene)?;
+            let Pulled { table, strength, energy } = bar.pull()?;
+            let [openings, stresses, law] = [0, 1, 2].map(|column| table.columns[column].iter().copied());
+            let resolved = bar.law.stress(1.0 - bar.span / bar.fracture.length_scale);
+            let rows = openings.zip(stresses.zip(law)).filter(|(opening, (_, law))| *opening > OPEN && *law > resolved);
+            let error = largest(rows.map(|(_, (found, law))| (found - law).abs()));
+            tables.push((stem.clone(), table));
+            Ok([strength, error, energy])
+        })?;
     }
-    Ok(findings)
+    findings.figures.push(figure(case, &stem));
+    findings.series.extend(tables.into_iter().take(1));
+    Ok(())
 }
 
 /// A bar along x.

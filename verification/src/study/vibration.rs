@@ -17,32 +17,21 @@ const PERIODS: f64 = 100.0;
 /// Time step over the critical one.
 const SAFETY: f64 = 0.2;
 
-pub(super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> super::Offered {
-    let mut offers = super::Offers::default();
-    for degree in 1..=3 {
-        for word in ["consistent", "lumped"] {
-            let variant = format!("p={degree}, {word} mass");
-            offers.held(&variant, ["energy at whole steps, oscillation over (omega dt)^2"]);
-            offers.bare(&variant, ["energy at whole steps, relative drift", "staggered energy, relative spread"]);
-        }
-    }
-    Ok(offers)
-}
-
-pub(super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
-    let mut findings = Findings::default();
+pub(super) fn study(_case: &Case, _scenes: &[CaseScene], findings: &mut Findings) -> Result<(), StudyError> {
     for degree in 1..=3 {
         for (mass, word) in [(Mass::Consistent, "consistent"), (Mass::Lumped, "lumped")] {
-            let energies = vibrate(degree, mass)?;
-            let variant = format!("p={degree}, {word} mass");
-            let quarter = theory(0.25, "velocity Verlet");
-            let oscillation = "energy at whole steps, oscillation over (omega dt)^2";
-            findings.add(&variant, oscillation, energies.oscillation(), quarter);
-            findings.add(&variant, "energy at whole steps, relative drift", energies.drift(), None);
-            findings.add(&variant, "staggered energy, relative spread", energies.spread(), None);
+            let quantities = [
+                ("energy at whole steps, oscillation over (omega dt)^2", theory(0.25, "velocity Verlet")),
+                ("energy at whole steps, relative drift", None),
+                ("staggered energy, relative spread", None),
+            ];
+            findings.measure(&format!("p={degree}, {word} mass"), quantities, || {
+                let energies = vibrate(degree, mass)?;
+                Ok([energies.oscillation(), energies.drift(), energies.spread()])
+            })?;
         }
     }
-    Ok(findings)
+    Ok(())
 }
 
 /// Energies at whole steps and staggered, and the square of the phase per step.

@@ -96,7 +96,7 @@ fn judge_study(
     out: &OutputFolder,
 ) -> Result<CaseOutcome, VerifyError> {
     let start = Instant::now();
-    let found = (study.run)(case, &prepared.scenes).and_then(|findings| {
+    let found = study.run(case, &prepared.scenes).and_then(|findings| {
         watch::check()?;
         Ok(findings)
     });

@@ -16,7 +16,7 @@ use crate::reference::{Library, ReferenceBand};
 use crate::scene::suggest::hint;
 use crate::scene::{Problem, SceneFileError};
 use crate::study::scene::concerned;
-use crate::study::{INPUTS, Offer, STUDIES, Study, find};
+use crate::study::{INPUTS, Measurement, STUDIES, Study, find};
 
 /// Keys of a check that every study reads.
 const EVERYWHERE: [&str; 18] = [
@@ -113,11 +113,11 @@ pub fn prepare(case: &Case, library: &Library) -> Result<Prepared, SceneFileErro
             scene_checks::look_at_charts(&mut wrong, &scenes);
         }
         Some(study) => {
-            let offers = (study.offers)(case, &scenes).map_err(|error| {
+            let plan = study.plan(case, &scenes).map_err(|error| {
                 case.error("study", &error.to_string(), "see the cases of this study in verification/cases")
             })?;
             for (index, check) in case.checks.iter().enumerate() {
-                records.extend(wrong.look_at_offers(index, check, offers.all()));
+                records.extend(wrong.look_at_plan(index, check, &plan));
             }
         }
     }
@@ -188,36 +188,42 @@ impl Wrong<'_> {
     }
 
     /// A check of a study that says itself what it measures.
-    fn look_at_offers(&mut self, index: usize, check: &Check, offers: &[Offer]) -> Vec<Planned> {
+    fn look_at_plan(&mut self, index: usize, check: &Check, plan: &[Measurement]) -> Vec<Planned> {
         self.look_at_keys(index, &format!("the study {:?}", self.case.study), &[&EVERYWHERE]);
         let key = |name: &str| format!("check.{index}.{name}");
-        let found: Vec<&Offer> = offers.iter().filter(|offer| offer.quantity == check.quantity).collect();
+        let found: Vec<&Measurement> = plan.iter().filter(|planned| planned.quantity == check.quantity).collect();
         if found.is_empty() {
-            let known = distinct(offers.iter().map(|offer| offer.quantity.as_str()));
+            let known = distinct(plan.iter().map(|planned| planned.quantity.as_str()));
             let remedy = format!("{}it measures: {}", hint(&check.quantity, &known), known.join("; "));
             self.note(key("quantity"), "the study does not measure this", remedy);
             return Vec::new();
         }
-        let named = |offer: &&&Offer| check.is_about(&offer.variant);
-        let meant: Vec<&&Offer> = found.iter().filter(named).collect();
+        let named = |planned: &&&Measurement| check.is_about(&planned.variant);
+        let meant: Vec<&&Measurement> = found.iter().filter(named).collect();
         if meant.is_empty() {
-            let known = distinct(found.iter().map(|offer| offer.variant.as_str()));
+            let known = distinct(found.iter().map(|planned| planned.variant.as_str()));
             self.note(key("variant"), "no run of this case matches", format!("known variants: {}", known.join("; ")));
         }
-        if check.around_reference.is_some() && check.expect.is_none() && !meant.iter().all(|offer| offer.held) {
+        if check.around_reference.is_some()
+            && check.expect.is_none()
+            && !meant.iter().all(|planned| planned.reference.is_some())
+        {
             let remedy = "give min and max, or the value with expect";
             self.note(key("below"), "below and above need a reference value", remedy);
         }
-        if check.expect.is_some() && check.expect_source.is_empty() && meant.iter().any(|offer| offer.held) {
+        if check.expect.is_some()
+            && check.expect_source.is_empty()
+            && meant.iter().any(|planned| planned.reference.is_some())
+        {
             let remedy = "remove expect, or state in expect_source why the value differs";
             self.note(key("expect"), "the study has its own reference value", remedy);
         }
         let given = self.case.document.root.at(&key("unit")).is_some();
-        if let Some(offer) = meant.iter().find(|offer| given && offer.unit != check.unit) {
-            let message = format!("the study gives this in {:?}", offer.unit);
-            self.note(key("unit"), message, format!("unit = {:?}, or remove it", offer.unit));
+        if let Some(planned) = meant.iter().find(|planned| given && planned.unit != check.unit) {
+            let message = format!("the study gives this in {:?}", planned.unit);
+            self.note(key("unit"), message, format!("unit = {:?}, or remove it", planned.unit));
         }
-        meant.iter().map(|offer| Planned { check: index, variant: offer.variant.clone(), scene: None }).collect()
+        meant.iter().map(|planned| Planned { check: index, variant: planned.variant.clone(), scene: None }).collect()
     }
 
     /// Records with one id would hide each other, and a former id that is one of today leads astray.

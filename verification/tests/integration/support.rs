@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use fisura_verification::output::OutputFolder;
-use fisura_verification::record::{Environment, Record, ResultSet};
+use fisura_verification::record::{Environment, ResultSet};
 use fisura_verification::scene::SceneFile;
 use fisura_verification::suite::{Case, Options, Progress, Seconds, VerifyError, load_cases, verify};
 use serde::Deserialize;
@@ -42,13 +42,7 @@ samples = 10
 
 pub struct Silent;
 
-impl Progress for Silent {
-    fn started(&self, _case: &Case) {}
-    fn advanced(&self, _case: &Case, _fraction: f64) {}
-    fn slow(&self, _case: &Case, _limit: Duration) {}
-    fn late(&self, _case: &Case, _limit: Duration) {}
-    fn finished(&self, _case: &Case, _records: &[Record]) {}
-}
+impl Progress for Silent {}
 
 pub fn repository(folder: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(folder)
@@ -68,10 +62,6 @@ impl Progress for Killed {
     fn started(&self, case: &Case) {
         assert!(case.name != self.0, "killed at {}", self.0);
     }
-    fn advanced(&self, _case: &Case, _fraction: f64) {}
-    fn slow(&self, _case: &Case, _limit: Duration) {}
-    fn late(&self, _case: &Case, _limit: Duration) {}
-    fn finished(&self, _case: &Case, _records: &[Record]) {}
 }
 
 /// Runs all cases below `root`.

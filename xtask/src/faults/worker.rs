@@ -58,12 +58,6 @@ impl Progress for Teller {
         }
     }
 
-    fn advanced(&self, _case: &Case, _fraction: f64) {}
-
-    fn slow(&self, _case: &Case, _limit: Duration) {}
-
-    fn late(&self, _case: &Case, _limit: Duration) {}
-
     fn finished(&self, case: &Case, records: &[Record]) {
         let report = Report {
             case: case.id(),

@@ -282,29 +282,18 @@ pub fn random_patch(degree: [usize; 2], spans: [usize; 2], seed: u64) -> NurbsPa
 /// A biquadratic square with curved sides, raised to `degree` and cut into `parts` per direction; polynomial.
 pub fn bent_patch(degree: usize, parts: usize) -> NurbsPatch {
     let piece: &[f64] = &[0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
-    let points = [
-        [0.0, 0.0],
-        [0.5, 0.15],
-        [1.0, 0.0],
-        [-0.1, 0.4],
-        [0.55, 0.45],
-        [1.15, 0.35],
-        [0.1, 0.8],
-        [0.5, 0.7],
-        [1.0, 0.9],
-    ];
-    let mut patch = NurbsPatch::new([2, 2], [piece, piece], points.to_vec(), vec![1.0; 9]).expect("not folded");
-    for direction in 0..2 {
-        while patch.spaces()[direction].degree() < degree {
-            patch = patch.elevate(direction).expect("degree up to 4");
-        }
-    }
-    patch.subdivide(parts).expect("not folded")
+    let x = [0.0, 0.5, 1.0, -0.1, 0.55, 1.15, 0.1, 0.5, 1.0];
+    let y = [0.0, 0.15, 0.0, 0.4, 0.45, 0.35, 0.8, 0.7, 0.9];
+    let points = x.into_iter().zip(y).map(|(x, y)| [x, y]).collect();
+    refined(NurbsPatch::new([2, 2], [piece, piece], points, vec![1.0; 9]).expect("not folded"), degree, parts)
 }
 
 /// The quarter annulus with radii 1 and 2, of `degree` in both directions and `parts` spans per direction.
 pub fn annulus(degree: usize, parts: usize) -> NurbsPatch {
-    let mut patch = NurbsPatch::quarter_annulus(1.0, 2.0).expect("growing radii");
+    refined(NurbsPatch::quarter_annulus(1.0, 2.0).expect("growing radii"), degree, parts)
+}
+
+fn refined(mut patch: NurbsPatch, degree: usize, parts: usize) -> NurbsPatch {
     for direction in 0..2 {
         while patch.spaces()[direction].degree() < degree {
             patch = patch.elevate(direction).expect("degree up to 4");

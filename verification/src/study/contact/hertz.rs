@@ -45,34 +45,32 @@ const MIDDLE: f64 = 0.25;
 /// Half width and depth of the region in which points show the stress under the contact, in a.
 const UNDER: [f64; 2] = [0.125, 0.5];
 
-pub(in super::super) fn offers(_case: &Case, scenes: &[CaseScene]) -> crate::study::Offered {
-    let held = &[
-        "half width of the contact over Hertz's",
-        "peak pressure from the forces in the middle over Hertz's",
-        "stress of points under the contact over Hertz's",
-        "momentum less the impulses of contact over the momentum",
-    ];
-    let bare = &[
-        "points across half the width",
-        "half width over R",
-        "half width over the shortest span",
-        "share of the contact that is seen after the largest force",
-        "closure of the energy ledger over the energy at t = 0",
-    ];
-    Ok(crate::study::Offers::of_scenes(scenes, held, bare))
-}
-
-pub(in super::super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
-    let mut findings = Findings::default();
+pub(in super::super) fn study(case: &Case, scenes: &[CaseScene], findings: &mut Findings) -> Result<(), StudyError> {
     let mut curves = vec![];
+    let mut series = vec![];
     for CaseScene { name, scene, .. } in scenes {
-        let found = Hertz::of(scene)?.press(scene)?;
-        found.add(name, &mut findings);
+        let one = || exact(1.0, "Hertz");
+        let quantities = [
+            ("half width of the contact over Hertz's", one()),
+            ("peak pressure from the forces in the middle over Hertz's", one()),
+            ("stress of points under the contact over Hertz's", one()),
+            ("momentum less the impulses of contact over the momentum", exact(0.0, "Newton")),
+            ("points across half the width", None),
+            ("half width over R", None),
+            ("half width over the shortest span", None),
+            ("share of the contact that is seen after the largest force", None),
+            ("closure of the energy ledger over the energy at t = 0", None),
+        ];
         let stem = format!("{}-pressure", series_stem(case, name));
         let label = if name.is_empty() { "measured" } else { name };
         curves.push(curve(label, &stem, ["s_over_a", "pressure_over_p0"], CurveStyle::Markers));
-        findings.series.push((stem, found.pressure()));
+        findings.measure(name, quantities, || {
+            let found = Hertz::of(scene)?.press(scene)?;
+            series.push((stem, found.pressure()));
+            Ok(found.numbers())
+        })?;
     }
+    findings.series.extend(series);
     let stem = format!("{}-ellipse", series_stem(case, ""));
     findings.series.push((stem.clone(), ellipse()));
     curves.push(curve("Hertz", &stem, ["s_over_a", "pressure_over_p0"], CurveStyle::Reference));
@@ -80,7 +78,7 @@ pub(in super::super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findi
         "Forces of contact per length near the largest force, in units of Hertz's half width and peak pressure.";
     let axes = ["place across the contact over a", "pressure over p0"];
     findings.figures.push(chart(case, "pressure", "Pressure across the contact", caption, axes, curves));
-    Ok(findings)
+    Ok(())
 }
 
 /// Hertz's semi-ellipse as a line.
@@ -269,31 +267,26 @@ impl Pressed {
         table
     }
 
-    fn add(&self, name: &str, findings: &mut Findings) {
+    /// The numbers of the study, in its order.
+    fn numbers(&self) -> [f64; 9] {
         let hertz = &self.hertz;
         let measured = (4.0 * self.mean(|m| m.square)).sqrt();
         let expected = self.mean(|m| hertz.half_width(m.force).powi(2)).sqrt();
-        let one = || exact(1.0, "Hertz");
-        findings.add(name, "half width of the contact over Hertz's", measured / expected, one());
         let width = 2.0 * COVERED / BINS as f64;
         let inner = (0..BINS).filter(|i| ((*i as f64 + 0.5) * width - COVERED).abs() < MIDDLE);
         let (count, total) = inner.fold((0.0, 0.0), |(n, sum), i| (n + 1.0, sum + self.mean(|m| m.bins[i])));
-        let peak = total / count / mean_of_ellipse(MIDDLE);
-        findings.add(name, "peak pressure from the forces in the middle over Hertz's", peak, one());
-        findings.add(name, "stress of points under the contact over Hertz's", self.mean(|m| m.stress), one());
-        let balance = self.balance / self.momentum;
-        findings.add(name, "momentum less the impulses of contact over the momentum", balance, exact(0.0, "Newton"));
-        findings.add(name, "points across half the width", expected / hertz.segment, None);
-        findings.add(name, "half width over R", expected / hertz.radius, None);
-        findings.add(name, "half width over the shortest span", expected / hertz.span, None);
-        findings.add(
-            name,
-            "share of the contact that is seen after the largest force",
+        let [segments, radii, spans] = [hertz.segment, hertz.radius, hertz.span].map(|length| expected / length);
+        [
+            measured / expected,
+            total / count / mean_of_ellipse(MIDDLE),
+            self.mean(|m| m.stress),
+            self.balance / self.momentum,
+            segments,
+            radii,
+            spans,
             self.share_after_the_top(),
-            None,
-        );
-        let closure = self.books.closure / self.books.initial();
-        findings.add(name, "closure of the energy ledger over the energy at t = 0", closure, None);
+            self.books.closure / self.books.initial(),
+        ]
     }
 }
 

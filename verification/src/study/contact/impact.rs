@@ -14,50 +14,27 @@ use fisura::scene::{Scene, Transfer};
 
 use super::{Books, run, sample_is_due, sum};
 use crate::output::history::Table;
-use crate::record::CurveStyle;
+use crate::record::{CurveStyle, Reference};
 use crate::study::charts::{chart, curve};
 use crate::study::orders::{Convergence, Curve, Level, Norm, Refined};
 use crate::study::scene::series_stem;
 use crate::study::{Case, CaseScene, Findings, StudyError, exact, other};
 
-pub(in super::super) fn offers(_case: &Case, scenes: &[CaseScene]) -> crate::study::Offered {
-    let mut groups: BTreeMap<String, usize> = BTreeMap::new();
-    for CaseScene { scene, .. } in scenes {
-        Bars::of(scene)?;
-        *groups.entry(group(scene)).or_default() += 1;
-    }
-    let held = &[
-        "velocity of the first bar after the impact over V",
-        "velocity of the second bar after the impact over V",
-        "coefficient of restitution",
-        "duration of the contact over 2 L1/c",
-        "mean force in the middle half of the contact over rho c V/2",
-        "energy lost in contact over the energy at t = 0",
-    ];
-    let bare = &["drift of the momentum over that of one bar", "closure of the energy ledger over the energy at t = 0"];
-    let mut offers = crate::study::Offers::of_scenes(scenes, held, bare);
-    for (name, _) in groups.iter().filter(|(_, meshes)| **meshes >= MESHES) {
-        offers.curve(name, Refined::Mesh { dimensions: 1 }, &NORMS, &ORDERS);
-    }
-    Ok(offers)
-}
-
-pub(in super::super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
-    let mut findings = Findings::default();
+pub(in super::super) fn study(case: &Case, scenes: &[CaseScene], findings: &mut Findings) -> Result<(), StudyError> {
     let mut curves = vec![];
     let mut meshes: BTreeMap<String, Vec<Level>> = BTreeMap::new();
     for CaseScene { name, scene, .. } in scenes {
         let bars = Bars::of(scene)?;
-        let found = bars.collide(scene)?;
-        bars.add(&found, name, &mut findings);
+        let found = findings.compute(|| bars.collide(scene))?;
+        bars.add(found.as_ref(), name, findings);
         let stem = format!("{}-force", series_stem(case, name));
         curves.push(curve(name, &stem, ["time_c_over_l1", "force_over_plateau"], CurveStyle::Line));
-        findings.series.push((stem, bars.table(&found)));
+        findings.series.extend(found.as_ref().map(|found| (stem, bars.table(found))));
         meshes.entry(group(scene)).or_default().push(Level {
             h: largest_spans(&scene.mesh)[0],
             unknowns: scene.mesh.knots[0].len(),
             seconds: 0.0,
-            errors: vec![bars.exit_error(&found), found.loss],
+            errors: found.map_or(vec![f64::NAN; 2], |found| vec![bars.exit_error(&found), found.loss]),
         });
     }
     let stem = format!("{}-rectangle", series_stem(case, ""));
@@ -67,8 +44,8 @@ pub(in super::super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findi
         "Sum of the forces of contact over rho c V/2 per area; the closed form is a rectangle of length 2 L1/c.";
     let axes = ["(t − t of the closing gap) c/L1", "force over rho c V/2"];
     findings.figures.push(chart(case, "force", "Force of contact", caption, axes, curves));
-    convergence(case, meshes).add_to(&mut findings);
-    Ok(findings)
+    convergence(case, meshes).add_to(findings);
+    Ok(())
 }
 
 /// Meshes from which on there are orders.
@@ -200,31 +177,28 @@ impl Bars {
         Ok(Collision { exit, duration, plateau, loss, books, momentum, forces })
     }
 
-    fn add(&self, found: &Collision, name: &str, findings: &mut Findings) {
+    fn add(&self, found: Option<&Collision>, name: &str, findings: &mut Findings) {
         let equal = self.leaving() == 1.0;
         let source = if equal { "equal bars exchange their velocities" } else { "restitution L1/L2" };
-        let [first, second] = found.exit;
-        findings.add(name, "velocity of the first bar after the impact over V", first, exact(0.0, source));
-        findings.add(name, "velocity of the second bar after the impact over V", second, exact(self.leaving(), source));
-        findings.add(name, "coefficient of restitution", second - first, exact(self.leaving(), "L1/L2"));
-        let over = found.duration / self.duration();
-        findings.add(name, "duration of the contact over 2 L1/c", over, exact(1.0, "two passages of a wave"));
+        let mut add = |quantity: &str, value: &dyn Fn(&Collision) -> f64, reference: Option<Reference>| {
+            findings.add(name, quantity, found.map(value), reference);
+        };
+        add("velocity of the first bar after the impact over V", &|found| found.exit[0], exact(0.0, source));
+        add(
+            "velocity of the second bar after the impact over V",
+            &|found| found.exit[1],
+            exact(self.leaving(), source),
+        );
+        let restitution = |found: &Collision| found.exit[1] - found.exit[0];
+        add("coefficient of restitution", &restitution, exact(self.leaving(), "L1/L2"));
+        let duration = |found: &Collision| found.duration / self.duration();
+        add("duration of the contact over 2 L1/c", &duration, exact(1.0, "two passages of a wave"));
         let force = exact(1.0, "rho c V/2 per area");
-        findings.add(name, "mean force in the middle half of the contact over rho c V/2", found.plateau, force);
-        findings.add(
-            name,
-            "energy lost in contact over the energy at t = 0",
-            found.loss,
-            exact(0.0, "an elastic impact"),
-        );
-        let Books { momentum, closure, .. } = found.books;
-        findings.add(name, "drift of the momentum over that of one bar", momentum / found.momentum, None);
-        findings.add(
-            name,
-            "closure of the energy ledger over the energy at t = 0",
-            closure / found.books.initial(),
-            None,
-        );
+        add("mean force in the middle half of the contact over rho c V/2", &|found| found.plateau, force);
+        add("energy lost in contact over the energy at t = 0", &|found| found.loss, exact(0.0, "an elastic impact"));
+        add("drift of the momentum over that of one bar", &|found| found.books.momentum / found.momentum, None);
+        let closure = |found: &Collision| found.books.closure / found.books.initial();
+        add("closure of the energy ledger over the energy at t = 0", &closure, None);
     }
 
     /// Force against time, both in units of the closed form, from a little before the contact to a little

@@ -10,29 +10,20 @@ use fisura::scene::Scene;
 use super::{dot, larger, run};
 use crate::study::{Case, CaseScene, Findings, StudyError, exact, other};
 
-pub(in super::super) fn offers(_case: &Case, scenes: &[CaseScene]) -> crate::study::Offered {
-    let held = &["gap at the first force of contact, in spans", "change of momentum before it, over the momentum"];
-    let bare = &[
-        "gap at which the supports of control points first overlap, in spans",
-        "force of contact in the end over the momentum per second",
-    ];
-    Ok(crate::study::Offers::of_scenes(scenes, held, bare))
-}
-
-pub(in super::super) fn study(_case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
-    let mut findings = Findings::default();
+pub(in super::super) fn study(_case: &Case, scenes: &[CaseScene], findings: &mut Findings) -> Result<(), StudyError> {
     for CaseScene { name, scene, .. } in scenes {
-        let found = approach(scene)?;
-        let zero = |source: &str| exact(0.0, source);
-        let quantity = "gap at the first force of contact, in spans";
-        findings.add(name, quantity, found.gap, zero("bodies touch where their boundaries do"));
-        let quantity = "gap at which the supports of control points first overlap, in spans";
-        findings.add(name, quantity, found.sharing, None);
-        let quantity = "change of momentum before it, over the momentum";
-        findings.add(name, quantity, found.momentum, zero("no force before contact"));
-        findings.add(name, "force of contact in the end over the momentum per second", found.force, None);
+        let quantities = [
+            ("gap at the first force of contact, in spans", exact(0.0, "bodies touch where their boundaries do")),
+            ("gap at which the supports of control points first overlap, in spans", None),
+            ("change of momentum before it, over the momentum", exact(0.0, "no force before contact")),
+            ("force of contact in the end over the momentum per second", None),
+        ];
+        findings.measure(name, quantities, || {
+            let Onset { gap, sharing, momentum, force } = approach(scene)?;
+            Ok([gap, sharing, momentum, force])
+        })?;
     }
-    Ok(findings)
+    Ok(())
 }
 
 /// What happened before the first force of contact.

@@ -96,25 +96,6 @@ fn score(events: &Events, end: f64) -> f64 {
     (scored.map(|(found, paper)| (found - paper).powi(2)).sum::<f64>() / SCORED as f64).sqrt()
 }
 
-pub fn offers(case: &Case, scenes: &[CaseScene]) -> crate::study::Offered {
-    setup(case, scenes)?;
-    let mut offers = crate::study::Offers::default();
-    offers.bare(
-        "",
-        [
-            "geometries that broke down",
-            "geometries whose cracks come in the paper's order",
-            "geometries near the paper",
-            "geometries near the paper that split along the diameter",
-            "least fracture energy over that of the broken walls",
-        ],
-    );
-    for quantity in ["smallest score", "smallest score of those that split along the diameter"] {
-        offers.push("", quantity, "us", false);
-    }
-    Ok(offers)
-}
-
 /// Geometries, and the scene they change.
 fn setup<'a>(case: &'a Case, scenes: &'a [CaseScene]) -> Result<(&'a [Geometry], &'a CaseScene), StudyError> {
     match (&case.rings, scenes) {
@@ -123,31 +104,37 @@ fn setup<'a>(case: &'a Case, scenes: &'a [CaseScene]) -> Result<(&'a [Geometry],
     }
 }
 
-pub fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
+pub fn study(case: &Case, scenes: &[CaseScene], findings: &mut Findings) -> Result<(), StudyError> {
     let (geometries, template) = setup(case, scenes)?;
-    let runs = geometries.par_iter().map(|&geometry| Trial::run(geometry, &template.scene));
-    let mut trials = runs.collect::<Result<Vec<_>, _>>()?;
-    trials.sort_by(|a, b| a.score.total_cmp(&b.score));
-    let mut findings = Findings::default();
-    add(&mut findings, &trials);
-    findings.series.push((series_stem(case, ""), table(&trials)));
-    Ok(findings)
+    let trials = findings.compute(|| {
+        let runs = geometries.par_iter().map(|&geometry| Trial::run(geometry, &template.scene));
+        let mut trials = runs.collect::<Result<Vec<_>, _>>()?;
+        trials.sort_by(|a, b| a.score.total_cmp(&b.score));
+        Ok(trials)
+    })?;
+    add(findings, trials.as_deref());
+    findings.series.extend(trials.map(|trials| (series_stem(case, ""), table(&trials))));
+    Ok(())
 }
 
 /// Numbers for the checks; the best trials stand first.
-fn add(findings: &mut Findings, trials: &[Trial]) {
+fn add(findings: &mut Findings, trials: Option<&[Trial]>) {
     let mut count = |quantity: &str, counts: fn(&Trial) -> bool| {
-        findings.add("", quantity, trials.iter().filter(|trial| counts(trial)).count() as f64, None);
+        let count = trials.map(|trials| trials.iter().filter(|trial| counts(trial)).count() as f64);
+        findings.add("", quantity, count, None);
     };
     count("geometries that broke down", |trial| trial.broke_down.is_some());
     count("geometries whose cracks come in the paper's order", Trial::is_in_order);
     count("geometries near the paper", |trial| trial.score <= NEAR);
     count("geometries near the paper that split along the diameter", Trial::is_near);
-    let ratios = trials.iter().filter_map(|trial| trial.energy_over_walls);
-    let least = ratios.map(|ratio| -ratio).reduce(larger).map_or(f64::NAN, |ratio| -ratio);
+    let least = trials.map(|trials| {
+        let ratios = trials.iter().filter_map(|trial| trial.energy_over_walls);
+        ratios.map(|ratio| -ratio).reduce(larger).map_or(f64::NAN, |ratio| -ratio)
+    });
     findings.add("", "least fracture energy over that of the broken walls", least, None);
     let mut smallest = |quantity: &str, counts: fn(&Trial) -> bool| {
-        let best = trials.iter().find(|trial| counts(trial)).map(|trial| trial.score);
+        let best = |trials: &[Trial]| trials.iter().find(|trial| counts(trial)).map_or(f64::NAN, |trial| trial.score);
+        let best = trials.map(|trials| 1e6 * best(trials));
         findings.measurements.push(in_microseconds("", quantity, best, None));
     };
     smallest("smallest score", |_| true);
@@ -209,7 +196,7 @@ mod tests {
         let aside = trial([29e-6, 61e-6, 99e-6], 1e-6, 0.5, Some(1.5));
         let backwards = trial([99e-6, 61e-6, 29e-6], 6e-5, 0.0, None);
         let mut findings = Findings::default();
-        add(&mut findings, &[near, aside, backwards]);
+        add(&mut findings, Some(&[near, aside, backwards]));
         let value =
             |quantity: &str| findings.measurements.iter().find(|m| m.quantity == quantity).unwrap().value.unwrap();
         assert_eq!(value("geometries whose cracks come in the paper's order"), 2.0);
@@ -224,7 +211,7 @@ mod tests {
         let late = Trial { score: 9e-5, aside: 0.0, broke_down: None, ..Trial::broken(geometry, 0.0) };
         let trials = [late, Trial::broken(geometry, 4e-5)];
         let mut findings = Findings::default();
-        add(&mut findings, &trials);
+        add(&mut findings, Some(&trials));
         let value = |quantity: &str| {
             findings.measurements.iter().find(|m| m.quantity == quantity).and_then(|m| m.value).unwrap()
         };

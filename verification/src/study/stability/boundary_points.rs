@@ -6,8 +6,7 @@
 //! that overlap at t = 0 have to be refused.
 
 use fisura::Simulation;
-use fisura::scene::{Body, Contact, Frame, Layout, Material, Mesh, Scene, Shape, TimeStep, Transfer};
-use fisura::simulation::breakdown::Breakdown;
+use fisura::scene::{Body, Contact, Frame, Layout, Mesh, Scene, Shape, TimeStep, Transfer};
 use fisura::validate::validate;
 
 use crate::extremes::{larger, largest};
@@ -21,53 +20,36 @@ const DEPTHS: [f64; 3] = [1e-2, 0.5, 1.0];
 /// Time step, s; the speed is one.
 const STEP: f64 = 0.0625;
 
-pub(in super::super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> crate::study::Offered {
-    let mut offers = crate::study::Offers::default();
-    for degree in 1..=3 {
-        for word in ["FLIP", "APIC"] {
-            let name = format!("p={degree}, {word}");
-            let bare = ["points that stood on a knot", "the ending names what left, and a remedy (1 is yes)"];
-            offers.bare(&name, bare);
-            let held = ["change of velocity, and strain, over the speed", "time at which the run ends, s"];
-            offers.held(&name, held);
-        }
-    }
-    for depth in DEPTHS {
-        offers.held(&format!("{depth} of a span deep"), ["overlapping bodies are refused (1 is yes)"]);
-    }
-    offers.held("touching", ["touching bodies are taken (1 is yes)"]);
-    Ok(offers)
-}
-
-pub(in super::super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
-    let mut findings = Findings::default();
+pub(in super::super) fn study(_case: &Case, _scenes: &[CaseScene], findings: &mut Findings) -> Result<(), StudyError> {
     for degree in 1..=3 {
         for (word, transfer) in [("FLIP", Transfer::Flip), ("APIC", Transfer::Apic)] {
-            fly(&flying(degree, transfer))?.add(&format!("p={degree}, {word}"), &mut findings);
+            // The foremost points stand at 2.75 + t: beyond 12 from t = 9.25 + STEP on; those of a step
+            // before are on the edge.
+            let quantities = [
+                ("points that stood on a knot", None),
+                ("change of velocity, and strain, over the speed", exact(0.0, "a rigid translation")),
+                ("time at which the run ends, s", exact(9.25 + STEP, "the first point beyond the edge")),
+                ("the ending names what left, and a remedy (1 is yes)", None),
+            ];
+            findings.measure(&format!("p={degree}, {word}"), quantities, || fly(&flying(degree, transfer)))?;
         }
     }
     for depth in DEPTHS {
-        let refused = validate(&overlapping(depth)).err();
-        let named = refused.is_some_and(|errors| errors.iter().any(|e| e.message.contains("overlaps")));
-        let name = format!("{depth} of a span deep");
-        findings.add(&name, "overlapping bodies are refused (1 is yes)", yes(named), exact(1.0, "refused"));
+        let quantity = ("overlapping bodies are refused (1 is yes)", exact(1.0, "refused"));
+        findings.measure(&format!("{depth} of a span deep"), [quantity], || {
+            let refused = validate(&overlapping(depth)).err();
+            let named = refused.is_some_and(|errors| errors.iter().any(|e| e.message.contains("overlaps")));
+            Ok([yes(named)])
+        })?;
     }
-    let touching = validate(&overlapping(0.0)).is_ok();
-    findings.add("touching", "touching bodies are taken (1 is yes)", yes(touching), exact(1.0, "taken"));
-    Ok(findings)
+    let quantity = ("touching bodies are taken (1 is yes)", exact(1.0, "taken"));
+    findings.measure("touching", [quantity], || Ok([yes(validate(&overlapping(0.0)).is_ok())]))
 }
 
 /// A block whose points stand a quarter of a span from knots at t = 0, and fly at unit speed.
 fn flying(degree: usize, transfer: Transfer) -> Scene {
-    let mut scene = PlainScene {
-        layout: Layout::Uniform,
-        ..PlainScene::free(
-            Mesh::uniform([degree; 2], [0.0; 2], [SPANS as f64, 4.0], [SPANS, 4]),
-            Material { young_modulus: 1.0, poisson_ratio: 0.25, density: 1.0, fracture: None },
-            2,
-        )
-    }
-    .scene();
+    let mesh = Mesh::uniform([degree; 2], [0.0; 2], [SPANS as f64, 4.0], [SPANS, 4]);
+    let mut scene = PlainScene { layout: Layout::Uniform, points: 2, ..PlainScene::unit(mesh, 0.25) }.scene();
     scene.analysis.frame = Frame::Updated;
     scene.analysis.transfer = transfer;
     scene.analysis.time_step = TimeStep::Fixed(STEP);
@@ -77,16 +59,7 @@ fn flying(degree: usize, transfer: Transfer) -> Scene {
     scene
 }
 
-/// What became of the block.
-struct Flight {
-    /// How often a point stood on a knot.
-    on_knots: usize,
-    /// Largest change of a velocity, and strain.
-    off: f64,
-    ending: Option<Breakdown>,
-}
-
-fn fly(scene: &Scene) -> Result<Flight, StudyError> {
+fn fly(scene: &Scene) -> Result<[f64; 4], StudyError> {
     let mut simulation = Simulation::new(scene)?;
     let (mut on_knots, mut off) = (0_usize, 0.0_f64);
     let ending = loop {
@@ -104,23 +77,9 @@ fn fly(scene: &Scene) -> Result<Flight, StudyError> {
         off = larger(off, largest(speed));
         off = larger(off, largest(points.iter().flat_map(|p| p.strain).map(f64::abs)));
     };
-    Ok(Flight { on_knots, off, ending })
-}
-
-impl Flight {
-    fn add(&self, name: &str, findings: &mut Findings) {
-        let Self { on_knots, off, ending } = self;
-        findings.add(name, "points that stood on a knot", *on_knots as f64, None);
-        findings.add(name, "change of velocity, and strain, over the speed", *off, exact(0.0, "a rigid translation"));
-        // The foremost points stand at 2.75 + t: beyond 12 from t = 9.25 + STEP on; those of a step before
-        // are on the edge.
-        let expected = 9.25 + STEP;
-        let time = ending.as_ref().map_or(f64::NAN, |ending| ending.time);
-        findings.add(name, "time at which the run ends, s", time, exact(expected, "the first point beyond the edge"));
-        let named =
-            ending.as_ref().is_some_and(|e| e.to_string().contains("left the mesh") && e.cause.contains("mesh"));
-        findings.add(name, "the ending names what left, and a remedy (1 is yes)", yes(named), None);
-    }
+    let time = ending.as_ref().map_or(f64::NAN, |ending| ending.time);
+    let named = ending.is_some_and(|e| e.to_string().contains("left the mesh") && e.cause.contains("mesh"));
+    Ok([on_knots as f64, off, time, yes(named)])
 }
 
 /// Two blocks, one span a side, that overlap by some of a span.

@@ -6,7 +6,7 @@
 //! = 1 and not for p ≥ 2; with the consistent mass `η^(2p−1)/η^(2p+1)`, so that it falls as η.
 
 use fisura::dynamics::updated_frame::UpdatedFrame;
-use fisura::scene::{Analysis, Frame, Mass, Material, Mesh, Scene, Shape, Side};
+use fisura::scene::{Analysis, Frame, Mass, Mesh, Scene, Shape, Side};
 
 use super::{logarithmic, total_frame};
 use crate::output::history::Table;
@@ -51,27 +51,6 @@ fn printed(entry: &str) -> Option<Reference> {
     Some(Reference { uncertainty, ..Reference::new(entry.parse().ok(), ReferenceKind::IndependentCode, source) })
 }
 
-pub(in super::super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> crate::study::Offered {
-    let mut offers = crate::study::Offers::default();
-    for (degree, mass, published) in TABLE {
-        let word = word_of(mass);
-        for (cut, _) in PUBLISHED_CUTS.into_iter().zip(published).filter(|(_, entry)| printed(entry).is_some()) {
-            offers.held(&format!("p={degree}, cut {cut:e}"), [cut_step(word)]);
-        }
-        offers.held(&format!("p={degree}, {word}"), ["exponent of the critical step in the cut part"]);
-    }
-    for degree in 1..=3 {
-        for (word, mass, _) in SQUARES {
-            let variant = format!("p={degree}, {word}");
-            offers.held(&variant, ["critical step of a square over that of the dense eigenvalue"]);
-            if mass == Mass::Lumped {
-                offers.held(&variant, ["critical step in the updated frame over that of theory"]);
-            }
-        }
-    }
-    Ok(offers)
-}
-
 fn word_of(mass: Mass) -> &'static str {
     if mass == Mass::Lumped { "lumped" } else { "consistent" }
 }
@@ -80,28 +59,34 @@ fn cut_step(word: &str) -> String {
     format!("c dt/h, {word} mass")
 }
 
-pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
-    let mut findings = Findings::default();
-    bars(case, &mut findings)?;
+pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene], findings: &mut Findings) -> Result<(), StudyError> {
+    bars(case, findings)?;
     for degree in 1..=3 {
         for (word, mass, cut) in SQUARES {
-            let scene = patch(degree, mass, cut);
-            let frame = total_frame(&scene)?;
-            let frequency = dense::highest(&dense::frequencies(&frame)?);
             let variant = format!("p={degree}, {word}");
+            let found = findings.compute(|| {
+                let scene = patch(degree, mass, cut);
+                let frame = total_frame(&scene)?;
+                let frequency = dense::highest(&dense::frequencies(&frame)?);
+                Ok((scene, frequency, frame.critical_step() * frequency / 2.0))
+            })?;
+            let ratio = found.as_ref().map(|(_, _, ratio)| *ratio);
             let source = exact(1.0, "2/ω of the dense eigenvalue");
-            let ratio = frame.critical_step() * frequency / 2.0;
             findings.add(&variant, "critical step of a square over that of the dense eigenvalue", ratio, source);
             if mass == Mass::Lumped {
-                let moving = Scene { analysis: Analysis { frame: Frame::Updated, ..scene.analysis.clone() }, ..scene };
-                let moving = UpdatedFrame::new(&moving).map_err(|_| other("a point is off the mesh"))?;
-                let ratio = moving.critical_step() * frequency / std::f64::consts::SQRT_2;
+                let moving = |(scene, frequency, _): (Scene, f64, f64)| {
+                    let analysis = Analysis { frame: Frame::Updated, ..scene.analysis.clone() };
+                    let moving = UpdatedFrame::new(&Scene { analysis, ..scene });
+                    let step = moving.map_err(|_| other("a point is off the mesh"))?.critical_step();
+                    Ok::<f64, StudyError>(step * frequency / std::f64::consts::SQRT_2)
+                };
                 let source = theory(1.0, "√2/ω, the limit of FLIP for waves the points do not see");
+                let ratio = found.map(moving).transpose()?;
                 findings.add(&variant, "critical step in the updated frame over that of theory", ratio, source);
             }
         }
     }
-    Ok(findings)
+    Ok(())
 }
 
 /// Critical steps of cut bars against the table, their scaling, and their chart.
@@ -110,7 +95,7 @@ fn bars(case: &Case, findings: &mut Findings) -> Result<(), StudyError> {
     let mut table =
         Table::new(&["cut", "p1_lumped", "p1_consistent", "p2_lumped", "p2_consistent", "p3_lumped", "p3_consistent"]);
     let mut steps: Vec<Vec<f64>> = Vec::new();
-    for cut in CUTS {
+    for cut in CUTS.into_iter().filter(|_| !findings.plan) {
         crate::watch::check()?;
         let row: Result<Vec<f64>, StudyError> =
             TABLE.iter().map(|&(degree, mass, _)| bar_step(degree, mass, cut)).collect();
@@ -120,7 +105,7 @@ fn bars(case: &Case, findings: &mut Findings) -> Result<(), StudyError> {
     }
     let step_at = |cut: f64, column: usize| {
         let row = CUTS.iter().position(|known| *known == cut);
-        row.map_or(f64::NAN, |row| steps[row][column])
+        row.and_then(|row| steps.get(row)).map_or(f64::NAN, |row| row[column])
     };
     let mut curves = Vec::new();
     for (column, (degree, mass, published)) in TABLE.iter().enumerate() {
@@ -145,14 +130,8 @@ fn bars(case: &Case, findings: &mut Findings) -> Result<(), StudyError> {
     }
     let caption = "A bar held at one end, whose free end cuts a span; 2/ω of dense eigenvalues. Where the curve of p = 3 jumps, the mass of the last control point is below 1e-17 of the largest and no longer counts.";
     let axes = ["cut part of the span", "c dt/h"];
-    findings.figures.push(logarithmic(
-        case,
-        "cut",
-        "Critical step against the cut part of a span",
-        caption,
-        axes,
-        curves,
-    ));
+    let title = "Critical step against the cut part of a span";
+    findings.figures.push(logarithmic(case, "cut", title, caption, axes, curves));
     findings.series.push((stem, table));
     Ok(())
 }
@@ -176,15 +155,8 @@ fn bar_step(degree: usize, mass: Mass, cut: f64) -> Result<f64, StudyError> {
 
 /// A free square of 6 spans a side; `cut` of the last span in each direction belongs to it.
 fn patch(degree: usize, mass: Mass, cut: f64) -> Scene {
-    let plain = PlainScene {
-        mass,
-        ..PlainScene::free(
-            Mesh::uniform([degree; 2], [0.0; 2], [6.0; 2], [6; 2]),
-            Material { young_modulus: 1.0, poisson_ratio: 0.3, density: 1.0, fracture: None },
-            degree + 1,
-        )
-    };
-    let mut scene = plain.scene();
+    let mesh = Mesh::uniform([degree; 2], [0.0; 2], [6.0; 2], [6; 2]);
+    let mut scene = PlainScene { mass, ..PlainScene::unit(mesh, 0.3) }.scene();
     scene.bodies[0].shape = Shape::Rectangle { min: [0.0; 2], max: [5.0 + cut; 2] };
     scene
 }

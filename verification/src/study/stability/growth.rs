@@ -6,7 +6,7 @@
 //! elastic energy by `1/(1 − (ω dt/2)²)` of it.
 
 use fisura::Simulation;
-use fisura::scene::{Boundary, Material, Mesh, Scene, Shape, Side, TimeStep};
+use fisura::scene::{Boundary, Mesh, Scene, Shape, Side, TimeStep};
 
 use super::total_frame;
 use crate::extremes::larger;
@@ -29,57 +29,43 @@ const LONG: usize = 10_000;
 const FROM: usize = 100;
 const TO: usize = 300;
 
-pub(in super::super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> crate::study::Offered {
-    let mut offers = crate::study::Offers::default();
-    for degree in 1..=3 {
-        for ratio in RATIOS {
-            let variant = variant(degree, ratio);
-            if ratio > 1.0 {
-                offers.held(&variant, ["growth per step over that of theory"]);
-            }
-            if ratio == BELOW {
-                offers.held(&variant, ["largest elastic energy of 10000 steps over its bound"]);
-                offers.bare(&variant, ["closure of the ledger after 10000 steps over the energy"]);
-            }
-            if ratio == ABOVE {
-                offers
-                    .bare(&variant, ["steps until the run breaks down", "place, time and cause are named (1 is yes)"]);
-            }
-        }
-    }
-    Ok(offers)
-}
-
-fn variant(degree: usize, ratio: f64) -> String {
-    format!("p={degree}, {ratio} of the critical step")
-}
-
-pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
-    let mut findings = Findings::default();
+pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene], findings: &mut Findings) -> Result<(), StudyError> {
     let stem = series_stem(case, "energy");
     let mut table = Table::new(&["step"]);
     table.columns = vec![(0..=TO).map(|step| step as f64).collect()];
     let mut curves = Vec::new();
     for degree in 1..=3 {
         let scene = cut_block(degree);
-        let frame = total_frame(&scene)?;
-        let frequency = dense::highest(&dense::frequencies(&frame)?);
+        let frequency = || Ok(dense::highest(&dense::frequencies(&total_frame(&scene)?)?));
+        let frequency = findings.compute(frequency)?.unwrap_or(f64::NAN);
         for ratio in RATIOS {
-            let energies = elastic_energies(&scene, ratio * 2.0 / frequency, TO)?;
-            let variant = variant(degree, ratio);
+            let variant = format!("p={degree}, {ratio} of the critical step");
+            let step = ratio * 2.0 / frequency;
+            let energies = findings.compute(|| elastic_energies(&scene, step, TO))?;
             if ratio > 1.0 {
-                let rate = (energies[TO] / energies[FROM]).ln() / (2.0 * (TO - FROM) as f64);
-                let exact = 2.0 * f64::acosh(ratio);
+                let rate = energies.as_ref().map(|e| (e[TO] / e[FROM]).ln() / (2.0 * (TO - FROM) as f64));
                 let source = theory(1.0, "2 acosh(ω dt/2) of the largest ω");
-                findings.add(&variant, "growth per step over that of theory", rate / exact, source);
+                let growth = rate.map(|rate| rate / (2.0 * f64::acosh(ratio)));
+                findings.add(&variant, "growth per step over that of theory", growth, source);
+            }
+            if ratio == BELOW {
+                let bound = theory(1.0, "the staggered energy is constant");
+                let bound = bound.map(|bound| Reference { side: crate::record::Side::AtMost, ..bound });
+                let quantities = [
+                    ("largest elastic energy of 10000 steps over its bound", bound),
+                    ("closure of the ledger after 10000 steps over the energy", None),
+                ];
+                findings.measure(&variant, quantities, || below(&scene, ratio, step))?;
+            }
+            if ratio == ABOVE {
+                let quantities = ["steps until the run breaks down", "place, time and cause are named (1 is yes)"];
+                findings.measure(&variant, quantities.map(|quantity| (quantity, None)), || above(&scene, step))?;
             }
             let column = format!("p{degree}_{ratio}");
             curves.push(curve(&format!("p = {degree}, {ratio} of it"), &stem, ["step", &column], CurveStyle::Line));
             table.names.push(column);
-            table.columns.push(energies);
+            table.columns.push(energies.unwrap_or_default());
         }
-        below(degree, &scene, frequency, &mut findings)?;
-        above(degree, &scene, frequency, &mut findings)?;
     }
     let energy = Axis::logarithmic("elastic energy (J/m)");
     let title = "Elastic energy below and above the critical step";
@@ -87,17 +73,13 @@ pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Find
     let body = FigureBody::chart([Axis::linear("step"), energy], curves, Vec::new());
     findings.figures.push(Figure::new(&case.suite, [&series_stem(case, "energy"), title, caption], body));
     findings.series.push((stem, table));
-    Ok(findings)
+    Ok(())
 }
 
 /// A square of 4.25 spans a side, held at its left side, in motion.
 fn cut_block(degree: usize) -> Scene {
-    let mut scene = PlainScene::free(
-        Mesh::uniform([degree; 2], [0.0; 2], [5.0; 2], [5; 2]),
-        Material { young_modulus: 1.0, poisson_ratio: 0.3, density: 1.0, fracture: None },
-        degree + 1,
-    )
-    .scene();
+    let mesh = Mesh::uniform([degree; 2], [0.0; 2], [5.0; 2], [5; 2]);
+    let mut scene = PlainScene::unit(mesh, 0.3).scene();
     scene.bodies[0].shape = Shape::Rectangle { min: [0.0; 2], max: [4.25; 2] };
     scene.bodies[0].velocity = [1e-3, 3e-4];
     scene.boundaries = vec![Boundary::fixed(Side::Left, [true; 2])];
@@ -123,9 +105,8 @@ fn with_step(scene: &Scene, dt: f64, steps: usize) -> Result<Simulation, StudyEr
     Ok(Simulation::new(&scene)?)
 }
 
-fn below(degree: usize, scene: &Scene, frequency: f64, findings: &mut Findings) -> Result<(), StudyError> {
-    let ratio = BELOW;
-    let mut simulation = with_step(scene, ratio * 2.0 / frequency, LONG)?;
+fn below(scene: &Scene, ratio: f64, step: f64) -> Result<[f64; 2], StudyError> {
+    let mut simulation = with_step(scene, step, LONG)?;
     let start = simulation.sample();
     let (mut elastic, mut closure) = (0.0_f64, 0.0_f64);
     while !simulation.finished() {
@@ -134,22 +115,14 @@ fn below(degree: usize, scene: &Scene, frequency: f64, findings: &mut Findings) 
         elastic = larger(elastic, sample.elastic);
         closure = larger(closure, sample.closure.abs());
     }
-    let variant = variant(degree, ratio);
     let energy = start.stored();
     let bound = 1.0 / (1.0 - ratio * ratio);
-    let quantity = "largest elastic energy of 10000 steps over its bound";
-    let source = theory(1.0, "the staggered energy is constant");
-    let source = source.map(|bound| Reference { side: crate::record::Side::AtMost, ..bound });
-    findings.add(&variant, quantity, elastic / (bound * energy), source);
-    findings.add(&variant, "closure of the ledger after 10000 steps over the energy", closure / energy, None);
-    Ok(())
+    Ok([elastic / (bound * energy), closure / energy])
 }
 
 /// A step above the critical one has to end the run, with place, time and cause.
-fn above(degree: usize, scene: &Scene, frequency: f64, findings: &mut Findings) -> Result<(), StudyError> {
-    let ratio = ABOVE;
-    let mut simulation = with_step(scene, ratio * 2.0 / frequency, LONG)?;
-    let variant = variant(degree, ratio);
+fn above(scene: &Scene, dt: f64) -> Result<[f64; 2], StudyError> {
+    let mut simulation = with_step(scene, dt, LONG)?;
     let found = loop {
         crate::watch::check()?;
         match simulation.step() {
@@ -166,7 +139,5 @@ fn above(degree: usize, scene: &Scene, frequency: f64, findings: &mut Findings) 
         steps = found.step as f64;
         named = yes(near && timed && found.cause.contains("times the critical step"));
     }
-    findings.add(&variant, "steps until the run breaks down", steps, None);
-    findings.add(&variant, "place, time and cause are named (1 is yes)", named, None);
-    Ok(())
+    Ok([steps, named])
 }

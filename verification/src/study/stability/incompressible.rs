@@ -6,7 +6,7 @@
 //! 0.4999 is held to its ledger.
 
 use fisura::Simulation;
-use fisura::scene::{Boundary, Material, Mesh, Scene, Side, TimeStep};
+use fisura::scene::{Boundary, Mesh, Scene, Side, TimeStep};
 
 use super::{logarithmic, total_frame};
 use crate::extremes::larger;
@@ -24,51 +24,35 @@ const SPANS: usize = 8;
 const FINE: (usize, usize) = (4, 12);
 const STEPS: usize = 2000;
 
-pub(in super::super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> crate::study::Offered {
-    let mut offers = crate::study::Offers::default();
-    for nu in RATIOS {
-        for degree in 1..=3 {
-            offers.held(&format!("p={degree}, nu={nu}"), ["lowest frequency, relative error"]);
-        }
-    }
-    for degree in 1..=3 {
-        let variant = format!("p={degree}, nu={}", RATIOS[3]);
-        offers.held(&variant, ["critical step over that of the dense eigenvalue"]);
-        offers.bare(&variant, ["closure of the ledger over the energy"]);
-    }
-    Ok(offers)
-}
-
-pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
-    let mut findings = Findings::default();
+pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene], findings: &mut Findings) -> Result<(), StudyError> {
     let stem = series_stem(case, "locking");
     let mut table = Table::new(&["one_less_twice_nu", "p1", "p2", "p3"]);
     for nu in RATIOS {
-        let reference = lowest_frequency(&square(FINE.0, FINE.1, nu))?;
+        let fine = findings.compute(|| lowest_frequency(&square(FINE.0, FINE.1, nu)))?;
         let mut row = vec![1.0 - 2.0 * nu];
         for degree in 1..=3 {
-            let error = lowest_frequency(&square(degree, SPANS, nu))? / reference - 1.0;
+            let found = findings.compute(|| lowest_frequency(&square(degree, SPANS, nu)))?;
+            let error = found.zip(fine).map(|(found, fine)| found / fine - 1.0);
             let source = "quartics on 12 × 12 spans".to_string();
             let reference = Reference::new(Some(0.0), ReferenceKind::SelfConvergence, source);
             let quantity = "lowest frequency, relative error";
             findings.add(&format!("p={degree}, nu={nu}"), quantity, error, Some(reference));
-            row.push(error.abs());
+            row.push(error.map_or(f64::NAN, f64::abs));
         }
         table.push(&row);
     }
     for degree in 1..=3 {
-        let scene = square(degree, SPANS, RATIOS[3]);
-        let frame = total_frame(&scene)?;
-        let highest = dense::highest(&dense::frequencies(&frame)?);
-        let variant = format!("p={degree}, nu={}", RATIOS[3]);
-        let ratio = frame.critical_step() * highest / 2.0;
-        findings.add(&variant, "critical step over that of the dense eigenvalue", ratio, exact(1.0, "2/ω"));
-        findings.add(
-            &variant,
-            "closure of the ledger over the energy",
-            closure(scene, 0.9 * frame.critical_step())?,
-            None,
-        );
+        let quantities = [
+            ("critical step over that of the dense eigenvalue", exact(1.0, "2/ω")),
+            ("closure of the ledger over the energy", None),
+        ];
+        findings.measure(&format!("p={degree}, nu={}", RATIOS[3]), quantities, || {
+            let scene = square(degree, SPANS, RATIOS[3]);
+            let frame = total_frame(&scene)?;
+            let highest = dense::highest(&dense::frequencies(&frame)?);
+            let step = frame.critical_step();
+            Ok([step * highest / 2.0, closure(scene, 0.9 * step)?])
+        })?;
     }
     let name = |degree: usize| format!("p{degree}");
     let curves =
@@ -78,17 +62,13 @@ pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Find
     let title = "Error towards an incompressible material";
     findings.figures.push(logarithmic(case, "locking", title, caption, axes, curves.collect()));
     findings.series.push((stem, table));
-    Ok(findings)
+    Ok(())
 }
 
 /// A unit square of unit modulus and density held at its bottom.
 fn square(degree: usize, spans: usize, nu: f64) -> Scene {
-    let mut scene = PlainScene::free(
-        Mesh::uniform([degree; 2], [0.0; 2], [1.0; 2], [spans; 2]),
-        Material { young_modulus: 1.0, poisson_ratio: nu, density: 1.0, fracture: None },
-        degree + 1,
-    )
-    .scene();
+    let mesh = Mesh::uniform([degree; 2], [0.0; 2], [1.0; 2], [spans; 2]);
+    let mut scene = PlainScene::unit(mesh, nu).scene();
     scene.boundaries = vec![Boundary::fixed(Side::Bottom, [true; 2])];
     scene
 }

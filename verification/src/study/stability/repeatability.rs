@@ -14,51 +14,31 @@ use crate::scene::plain::PlainScene;
 use crate::study::{Case, CaseScene, Findings, StudyError, exact, other};
 use crate::watch;
 
-pub(in super::super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> crate::study::Offered {
-    let mut offers = crate::study::Offers::default();
-    for frame in ["total frame", "updated frame"] {
-        for threads in THREADS {
-            let variant = format!("{frame}, {threads} threads");
-            offers.held(&variant, ["numbers that differ from those of one thread"]);
-        }
-        offers.held(frame, ["numbers that differ after a checkpoint"]);
-    }
-    for degree in 1..=3 {
-        let quantity = "mirror images, largest difference of displacements over the largest";
-        offers.held(&format!("p={degree}"), [quantity]);
-    }
-    Ok(offers)
-}
-
 /// Numbers of threads that are compared with one.
 const THREADS: [usize; 2] = [2, 5];
 
-pub(in super::super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
-    let mut findings = Findings::default();
+pub(in super::super) fn study(_case: &Case, _scenes: &[CaseScene], findings: &mut Findings) -> Result<(), StudyError> {
     for (name, frame) in [("total frame", Frame::Total), ("updated frame", Frame::Updated)] {
         let scene = notched(frame);
-        let one = on_threads(1, &scene)?;
-        let differing =
-            |other: &[u64]| one.iter().zip(other).filter(|(a, b)| a != b).count() + one.len().abs_diff(other.len());
-        let differ = differing(&interrupted(&scene)?) as f64;
-        findings.add(name, "numbers that differ after a checkpoint", differ, exact(0.0, "the whole state is stored"));
+        let one = findings.compute(|| on_threads(1, &scene))?.unwrap_or_default();
+        let differing = |other: Result<Vec<u64>, StudyError>| {
+            let other = other?;
+            Ok([(one.iter().zip(&other).filter(|(a, b)| a != b).count() + one.len().abs_diff(other.len())) as f64])
+        };
+        let quantity = ("numbers that differ after a checkpoint", exact(0.0, "the whole state is stored"));
+        findings.measure(name, [quantity], || differing(numbers(&scene, true)))?;
         for threads in THREADS {
-            let differ = differing(&on_threads(threads, &scene)?);
+            let quantity = ("numbers that differ from those of one thread", exact(0.0, "fixed sums"));
             let variant = format!("{name}, {threads} threads");
-            findings.add(
-                &variant,
-                "numbers that differ from those of one thread",
-                differ as f64,
-                exact(0.0, "fixed sums"),
-            );
+            findings.measure(&variant, [quantity], || differing(on_threads(threads, &scene)))?;
         }
     }
     for degree in 1..=3 {
-        let off = asymmetry(&symmetric(degree))?;
-        let quantity = "mirror images, largest difference of displacements over the largest";
-        findings.add(&format!("p={degree}"), quantity, off, exact(0.0, "the scene is its own mirror image"));
+        let words = "mirror images, largest difference of displacements over the largest";
+        let quantity = (words, exact(0.0, "the scene is its own mirror image"));
+        findings.measure(&format!("p={degree}"), [quantity], || Ok([asymmetry(&symmetric(degree))?]))?;
     }
-    Ok(findings)
+    Ok(())
 }
 
 fn glass(cells: [usize; 2], degree: usize, fracture: Option<Fracture>) -> Scene {
@@ -93,32 +73,21 @@ fn notched(frame: Frame) -> Scene {
 fn on_threads(threads: usize, scene: &Scene) -> Result<Vec<u64>, StudyError> {
     let pool = watch::pool(threads);
     let pool = pool.map_err(|e| other(format!("{threads} threads cannot be started: {e}")))?;
-    pool.install(|| {
-        let mut simulation = Simulation::new(scene)?;
-        let mut bits = Vec::new();
-        while !simulation.finished() {
-            watch::check()?;
-            bits.extend(next_sample(&mut simulation)?);
-        }
-        Ok(bits)
-    })
+    pool.install(|| numbers(scene, false))
 }
 
-fn next_sample(simulation: &mut Simulation) -> Result<Vec<u64>, StudyError> {
-    let sample = simulation.advance_to_next_sample()?;
-    Ok(sample.named_values().into_iter().map(|(_, value)| value.to_bits()).collect())
-}
-
-/// The same numbers, of a run that is stored at every sample and taken up again.
-fn interrupted(scene: &Scene) -> Result<Vec<u64>, StudyError> {
+/// The same numbers of a run, which may be stored at every sample and taken up again.
+fn numbers(scene: &Scene, interrupted: bool) -> Result<Vec<u64>, StudyError> {
     let mut simulation = Simulation::new(scene)?;
     let mut bits = Vec::new();
     while !simulation.finished() {
         watch::check()?;
-        bits.extend(next_sample(&mut simulation)?);
-        let state = simulation.checkpoint().map_err(other)?;
-        let resumed = Simulation::resume(scene, &state);
-        simulation = resumed.map_err(other)?;
+        let sample = simulation.advance_to_next_sample()?;
+        bits.extend(sample.named_values().into_iter().map(|(_, value)| value.to_bits()));
+        if interrupted {
+            let state = simulation.checkpoint().map_err(other)?;
+            simulation = Simulation::resume(scene, &state).map_err(other)?;
+        }
     }
     Ok(bits)
 }

@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 use fisura::linear_algebra::lane::Lane;
 use fisura::material::hencky::hencky_strain;
 use fisura::material::split::tensile_strain;
-use fisura::scene::{Boundary, Fracture, Material, Mesh, Scene, Side};
+use fisura::scene::{Boundary, Fracture, Mesh, Scene, Side};
 
 use super::{logarithmic, total_frame};
 use crate::extremes::{larger, largest};
@@ -51,34 +51,23 @@ const DRAWN: usize = 2000;
 const SMALL: f64 = 2.649_825_291_116_8e-169; // 2^-560
 const STEPS: usize = 400;
 
-pub(in super::super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> crate::study::Offered {
-    let mut offers = crate::study::Offers::default();
-    for (name, _) in FAMILIES {
-        offers.held(name, ["tensile strain, largest error over the strain"]);
-    }
-    offers.held("stretches from 1e-12 to 1000", ["Hencky strain, largest error"]);
-    offers.held("run", ["velocities at strains 3e-169 times as large, largest difference after scaling"]);
-    Ok(offers)
-}
-
-pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
-    let mut findings = Findings::default();
+pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene], findings: &mut Findings) -> Result<(), StudyError> {
     for (name, draw) in FAMILIES {
-        let mut random = Random::scrambled(7);
-        let mut worst = 0.0_f64;
-        for _ in 0..DRAWN {
-            let principal = draw(&mut random);
-            worst = larger(worst, error(principal, TAU * random.unit()));
-        }
-        findings.add(
-            name,
-            "tensile strain, largest error over the strain",
-            worst,
-            exact(0.0, "from principal strains"),
-        );
+        let quantity = ("tensile strain, largest error over the strain", exact(0.0, "from principal strains"));
+        findings.measure(name, [quantity], || {
+            let mut random = Random::scrambled(7);
+            let mut worst = 0.0_f64;
+            for _ in 0..DRAWN {
+                let principal = draw(&mut random);
+                worst = larger(worst, error(principal, TAU * random.unit()));
+            }
+            Ok([worst])
+        })?;
     }
-    findings.add("stretches from 1e-12 to 1000", "Hencky strain, largest error", hencky_error(), exact(0.0, "ln λ"));
-    let (table, difference) = scaled_runs()?;
+    let quantity = ("Hencky strain, largest error", exact(0.0, "ln λ"));
+    findings.measure("stretches from 1e-12 to 1000", [quantity], || Ok([hencky_error()]))?;
+    let found = findings.compute(scaled_runs)?;
+    let (table, difference) = found.map_or((Table::default(), None), |(table, difference)| (table, Some(difference)));
     let quantity = "velocities at strains 3e-169 times as large, largest difference after scaling";
     findings.add("run", quantity, difference, exact(0.0, "homogeneous of degree one"));
     let stem = series_stem(case, "scaled");
@@ -86,16 +75,10 @@ pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Find
     let curves = curves.map(|(label, column)| curve(label, &stem, ["step", column], CurveStyle::Line));
     let caption = "A block held at its left side and set in motion: largest velocity, spectral split.";
     let axes = ["step", "largest velocity over that at t = 0"];
-    findings.figures.push(logarithmic(
-        case,
-        "scaled",
-        "The same motion, small and smaller",
-        caption,
-        axes,
-        curves.into(),
-    ));
+    let title = "The same motion, small and smaller";
+    findings.figures.push(logarithmic(case, "scaled", title, caption, axes, curves.into()));
     findings.series.push((stem, table));
-    Ok(findings)
+    Ok(())
 }
 
 /// Largest component of the error of the tensile part over the larger principal strain.
@@ -155,13 +138,9 @@ fn scaled_runs() -> Result<(Table, f64), StudyError> {
 /// A block held at its left side whose speed strains it by about `size` times 1e-3; it is far too tough to
 /// crack.
 fn block(size: f64) -> Scene {
-    let fracture = Fracture::at2(1e12, 0.25);
-    let mut scene = PlainScene::free(
-        Mesh::uniform([2; 2], [0.0; 2], [2.0, 1.0], [8, 4]),
-        Material { young_modulus: 1.0, poisson_ratio: 0.3, density: 1.0, fracture: Some(fracture) },
-        3,
-    )
-    .scene();
+    let mut plain = PlainScene::unit(Mesh::uniform([2; 2], [0.0; 2], [2.0, 1.0], [8, 4]), 0.3);
+    plain.material.fracture = Some(Fracture::at2(1e12, 0.25));
+    let mut scene = plain.scene();
     scene.bodies[0].velocity = [1e-3 * size, 3e-4 * size];
     scene.boundaries = vec![Boundary::fixed(Side::Left, [true; 2])];
     scene

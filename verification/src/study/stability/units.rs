@@ -15,7 +15,7 @@ use crate::record::CurveStyle;
 use crate::scene::plain::PlainScene;
 use crate::study::charts::{chart, curve};
 use crate::study::scene::series_stem;
-use crate::study::{Case, CaseScene, Findings, StudyError, exact, other};
+use crate::study::{Case, CaseScene, Findings, StudyError, exact};
 
 /// Thickness, m: neither one metre nor one millimetre.
 const THICKNESS: f64 = 2.5e-3;
@@ -40,31 +40,14 @@ impl Units {
     }
 }
 
-pub(in super::super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> crate::study::Offered {
-    let mut offers = crate::study::Offers::default();
-    for (name, cracked) in [("elastic", false), ("cracking", true)] {
-        let energies = ["kinetic energy", "elastic energy", "external work"];
-        offers.held(name, energies.iter().chain(cracked.then_some(&"fracture energy")).map(|e| in_other_units(e)));
-        if !cracked {
-            offers.held(name, ["external work over that of plane waves"]);
-        }
-    }
-    Ok(offers)
-}
-
-fn in_other_units(energy: &str) -> String {
-    format!("{energy} in other units, largest difference over the largest")
-}
-
-pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
-    let mut findings = Findings::default();
+pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene], findings: &mut Findings) -> Result<(), StudyError> {
     let mut curves = Vec::new();
     let stem = series_stem(case, "energies");
     let mut table = Table::new(&["sample"]);
     table.columns = vec![(0..=SAMPLES).map(|i| i as f64).collect()];
     for (name, cracked) in [("elastic", false), ("cracking", true)] {
-        let [si, millimetre] = [METRE_KILOGRAM, MILLIMETRE_TONNE].map(|units| run(&plate(units, cracked)));
-        let (si, millimetre) = (si?, millimetre?);
+        let run = |units: Units| findings.compute(|| run(&plate(units, cracked)));
+        let (si, millimetre) = (run(METRE_KILOGRAM)?, run(MILLIMETRE_TONNE)?);
         let factor = MILLIMETRE_TONNE.energy();
         for (quantity, value) in [
             ("kinetic energy", (|s| s.kinetic) as fn(&Sample) -> f64),
@@ -72,33 +55,37 @@ pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Find
             ("external work", |s| s.external_work),
             ("fracture energy", |s| s.fracture.as_ref().map_or(0.0, |f| f.energy)),
         ] {
-            let scale = largest(si.iter().map(|s| value(s).abs()));
-            if scale > 0.0 {
-                let difference = si.iter().zip(&millimetre).map(|(a, b)| (value(a) - value(b) / factor).abs());
-                findings.add(name, &in_other_units(quantity), largest(difference) / scale, exact(0.0, "the same body"));
+            if cracked || quantity != "fracture energy" {
+                let difference = si.as_ref().zip(millimetre.as_ref()).map(|(si, millimetre)| {
+                    let scale = largest(si.iter().map(|s| value(s).abs()));
+                    largest(si.iter().zip(millimetre).map(|(a, b)| (value(a) - value(b) / factor).abs())) / scale
+                });
+                let quantity = format!("{quantity} in other units, largest difference over the largest");
+                findings.add(name, &quantity, difference, exact(0.0, "the same body"));
             }
         }
         for (units, samples, factor) in [("m, kg", &si, 1.0), ("mm, t", &millimetre, factor)] {
             let column = format!("{name}_{}", if factor == 1.0 { "si" } else { "mm" });
             curves.push(curve(&format!("{name}, {units}"), &stem, ["sample", &column], CurveStyle::Line));
             table.names.push(column);
-            table.columns.push(samples.iter().map(|s| s.elastic / factor).collect());
+            table.columns.push(samples.iter().flatten().map(|s| s.elastic / factor).collect());
         }
         if !cracked {
             // A traction t on the side of length L drives a wave with the velocity t/(rho c): work t² L d
             // T/(rho c) per side.
-            let last = si.last().ok_or_else(|| other("an empty history"))?;
             let speed = (32e9 * 0.8 / (1.2 * 0.6) / 2450.0_f64).sqrt();
-            let work = 2.0 * 1e12 * 4e-3 * THICKNESS * last.time / (2450.0 * speed);
+            let work = |last: &Sample| 2.0 * 1e12 * 4e-3 * THICKNESS * last.time / (2450.0 * speed);
+            let last = si.as_ref().and_then(|si| si.last());
+            let ratio = last.map(|last| last.external_work / work(last));
             let source = exact(1.0, "t² A T/(rho c) on two sides of plane waves");
-            findings.add(name, "external work over that of plane waves", last.external_work / work, source);
+            findings.add(name, "external work over that of plane waves", ratio, source);
         }
     }
     let axes = ["sample", "elastic energy (J)"];
     let caption = "The same plate in metres and kilograms and in millimetres and tonnes, scaled back.";
     findings.figures.push(chart(case, "energies", "Elastic energy in two systems of units", caption, axes, curves));
     findings.series.push((stem, table));
-    Ok(findings)
+    Ok(())
 }
 
 fn run(scene: &Scene) -> Result<Vec<Sample>, StudyError> {

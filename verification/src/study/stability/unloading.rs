@@ -8,7 +8,7 @@
 use std::collections::BTreeMap;
 
 use fisura::Simulation;
-use fisura::scene::{Boundary, Fracture, Frame, Material, Mesh, Scene, Shape, Side};
+use fisura::scene::{Boundary, Fracture, Frame, Mesh, Scene, Shape, Side};
 
 use crate::extremes::{larger, largest};
 use crate::output::history::Table;
@@ -22,37 +22,31 @@ use crate::study::{Case, CaseScene, Findings, StudyError, exact};
 const LENGTH: f64 = 2.0;
 const HEIGHT: f64 = 0.5;
 
-pub(in super::super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> crate::study::Offered {
-    let mut offers = crate::study::Offers::default();
-    for name in ["total", "updated"] {
-        offers.held(name, ["largest fall of the history of a point in a step over the largest history"]);
-        offers.bare(name, ["peaks of the elastic energy"]);
-    }
-    Ok(offers)
-}
-
-pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
-    let mut findings = Findings::default();
-    let mut curves = Vec::new();
+pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene], findings: &mut Findings) -> Result<(), StudyError> {
+    let (mut curves, mut series) = (Vec::new(), Vec::new());
     for (name, frame) in [("total", Frame::Total), ("updated", Frame::Updated)] {
-        let Vibration { table, fall, largest } = vibrate(frame)?;
-        findings.add(
-            name,
-            "largest fall of the history of a point in a step over the largest history",
-            fall / largest,
-            exact(0.0, "a maximum over time"),
-        );
-        let turns = table.columns[2].windows(3).filter(|e| e[1] > e[0] && e[1] > e[2]).count();
-        findings.add(name, "peaks of the elastic energy", turns as f64, None);
         let stem = series_stem(case, name);
         for (label, column) in [("Σ V H", "history_j_per_m"), ("elastic energy", "elastic_j_per_m")] {
             curves.push(curve(&format!("{name}, {label}"), &stem, ["time_s", column], CurveStyle::Line));
         }
-        findings.series.push((stem, table));
+        let quantities = [
+            (
+                "largest fall of the history of a point in a step over the largest history",
+                exact(0.0, "a maximum over time"),
+            ),
+            ("peaks of the elastic energy", None),
+        ];
+        findings.measure(name, quantities, || {
+            let Vibration { table, fall, largest } = vibrate(frame)?;
+            let turns = table.columns[2].windows(3).filter(|e| e[1] > e[0] && e[1] > e[2]).count();
+            series.push((stem, table));
+            Ok([fall / largest, turns as f64])
+        })?;
     }
+    findings.series.extend(series);
     let axes = ["time (s)", "energy (J/m)"];
     findings.figures.push(chart(case, "history", "History field of a vibrating body", "", axes, curves));
-    Ok(findings)
+    Ok(())
 }
 
 /// What is seen of a vibrating body.
@@ -104,13 +98,10 @@ fn largest_fall(before: &Histories, now: &Histories) -> f64 {
 
 /// A bar held at its left side and set in motion along x; strained to about a tenth of its strength.
 fn bar(frame: Frame) -> Scene {
-    let fracture = Fracture::at2(1e-2, 0.25);
-    let mut scene = PlainScene::free(
-        Mesh::uniform([2; 2], [0.0; 2], [2.5, HEIGHT], [20, 4]),
-        Material { young_modulus: 1.0, poisson_ratio: 0.2, density: 1.0, fracture: Some(fracture) },
-        2,
-    )
-    .scene();
+    let mesh = Mesh::uniform([2; 2], [0.0; 2], [2.5, HEIGHT], [20, 4]);
+    let mut plain = PlainScene { points: 2, ..PlainScene::unit(mesh, 0.2) };
+    plain.material.fracture = Some(Fracture::at2(1e-2, 0.25));
+    let mut scene = plain.scene();
     scene.analysis.frame = frame;
     scene.analysis.end_time = 40.0;
     scene.bodies[0].shape = Shape::Rectangle { min: [0.0; 2], max: [LENGTH, HEIGHT] };
