@@ -20,7 +20,7 @@ mod gaps;
 mod integrate;
 mod map;
 mod mapped;
-mod moving;
+pub(crate) mod moving;
 mod parting;
 mod point_graph;
 mod sheets;
@@ -28,7 +28,6 @@ mod tables;
 
 pub(crate) use cut_batch::CutBatch;
 pub(crate) use mapped::{MappedPoint, Mapping};
-pub(crate) use moving::moving_points;
 pub(crate) use sheets::Sheets;
 
 use std::ops::Range;

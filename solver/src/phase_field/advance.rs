@@ -30,9 +30,9 @@ use crate::linear_algebra::lane::Lane;
 use crate::linear_algebra::preconditioner::TOO_MANY;
 use crate::particles::lattice::Lattice;
 
-/// Least diagonal of the matrix, of the coefficient of the gradient term, with which a control point counts for
-/// how fast c changes: it is at least some 0.4 for functions inside a body. Those that hardly reach into it at
-/// a cut span have any values.
+/// Least diagonal of the matrix, of the coefficient of the gradient term, with which a control point counts
+/// for how fast c changes: it is at least some 0.4 for functions inside a body. Those that hardly reach into
+/// it at a cut span have any values.
 const REACH: f64 = 0.05;
 
 impl PhaseField {

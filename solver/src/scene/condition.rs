@@ -78,6 +78,11 @@ impl Load {
             }
         }
     }
+
+    /// Whether it depends on which side of the boundary the material is.
+    pub(crate) fn has_side(&self) -> bool {
+        !matches!(self, Self::Stress(_))
+    }
 }
 
 /// Traction on an edge of a body.

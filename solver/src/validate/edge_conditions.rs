@@ -24,7 +24,7 @@ pub(super) fn check(key: &str, scene: &Scene, look: &Look<'_>, findings: &mut Fi
         }
         let before = findings.errors.len();
         motion(&key, &condition.prescribed, condition.components(), scene, findings);
-        tractions::edge(&key, &condition.edge, look, findings);
+        tractions::edge(&key, &condition.edge, true, look, findings);
         if findings.errors.len() > before {
             continue;
         }

@@ -25,11 +25,12 @@ pub(super) fn check(key: &str, traction: &Traction, look: &Look<'_>, findings: &
     if traction.time.range(look.end_time) == [0.0; 2] && traction.time.integral(look.end_time) == 0.0 {
         findings.warn(format!("{key}.time"), "the factor is zero until end_time: this load never acts");
     }
-    edge(key, &traction.edge, look, findings);
+    edge(key, &traction.edge, traction.load.has_side(), look, findings);
 }
 
-/// An edge lies on the boundary of its body.
-pub(super) fn edge(key: &str, edge: &Edge, look: &Look<'_>, findings: &mut Findings) {
+/// An edge lies on the boundary of its body. What acts there needs a side if it has no meaning between
+/// material on both sides.
+pub(super) fn edge(key: &str, edge: &Edge, needs_side: bool, look: &Look<'_>, findings: &mut Findings) {
     let Look { body, ground, .. } = *look;
     match edge {
         Edge::Side(_) if body.shape == Shape::Patch => {}
@@ -64,13 +65,20 @@ pub(super) fn edge(key: &str, edge: &Edge, look: &Look<'_>, findings: &mut Findi
                 let message = format!("the segment leaves body {:?}: ({x}, {y}) m lies outside", body.name);
                 findings.error(key, message, ON_BOUNDARY);
             } else if let Some([x, y]) =
-                middles(*ends).chain(parts()).find(|&at| sides(at, *ends, body) == [true, true])
+                middles(*ends).chain(parts()).find(|&at| has_no_side(at, *ends, body, needs_side))
             {
                 let message = format!(
                     "the segment runs inside body {:?}: there is material on both sides of ({x}, {y}) m",
                     body.name
                 );
                 findings.error(key, message, ON_BOUNDARY);
+            } else if let Some([x, y]) = middles(*ends).find(|&at| sides(at, *ends, body) == [true; 2]) {
+                let message = format!(
+                    "there is material of body {:?} on both sides of ({x}, {y}) m: the load is a line of forces inside it, \
+                     not on its boundary",
+                    body.name
+                );
+                findings.warn(key, message);
             }
         }
     }
@@ -99,6 +107,14 @@ fn sides([x, y]: [f64; 2], [from, to]: [[f64; 2]; 2], body: &Body) -> [bool; 2] 
 /// Whether there is none: in the mouth of a notch that begins on the segment.
 fn is_bare(at: [f64; 2], ends: [[f64; 2]; 2], body: &Body) -> bool {
     body.shape != Shape::Patch && sides(at, ends, body) == [false, false]
+}
+
+/// Whether what acts at a position (m) on a segment has no meaning: it needs a side, or the segment is on a
+/// slit, which has two faces.
+fn has_no_side(at: [f64; 2], [from, to]: [[f64; 2]; 2], body: &Body, needs_side: bool) -> bool {
+    let near = BESIDE * (to[0] - from[0]).hypot(to[1] - from[1]);
+    let on_slit = || body.cracks.iter().any(|crack| crack.is_slit() && crack.distance(at) < near);
+    sides(at, [from, to], body) == [true, true] && (needs_side || on_slit())
 }
 
 /// An arc lies on the boundary of its body.

@@ -18,7 +18,7 @@ use crate::dynamics::failure::Failure;
 use crate::dynamics::loads::{Balance, LostTraction};
 use crate::material::degradation::FractureModel;
 use crate::material::elasticity::ElasticModuli;
-use crate::particles::lattice::moving_points;
+use crate::particles::lattice::moving::moving_points;
 use crate::particles::points::{Cells, OutsidePatch, Point};
 use crate::phase_field::fracture::crack_start;
 use crate::scene::{Body, Boundary, Kinematics, Material, Plane, Scene, Transfer};
