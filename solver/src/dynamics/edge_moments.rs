@@ -195,8 +195,9 @@ pub(in crate::dynamics) fn multiplier_space(patch: &Patch, parts: &[Vec<SurfaceP
     // Length along the edge, and the same in parts of the least length.
     let mut ends = vec![[0.0; 2]];
     for part in parts.iter().filter(|part| !part.is_empty()) {
-        let [along, number] = ends[ends.len() - 1];
-        ends.push([along + length(part), number + length(part) / (wanted * size(part))]);
+        let ([along, number], size) = (ends[ends.len() - 1], size(part));
+        let more = if size > 0.0 { length(part) / (wanted * size) } else { 0.0 }; // it has left the mesh
+        ends.push([along + length(part), number + more]);
     }
     let [total, all] = ends[ends.len() - 1];
     let number = (all + ROUND_OFF).floor();

@@ -28,8 +28,6 @@ pub(crate) struct Awake {
     /// Control points whose value may change, in order, and as marks.
     pub(super) candidates: Vec<usize>,
     is_candidate: Vec<bool>,
-    /// Cells whose energy may reach the threshold soon.
-    driven: Vec<bool>,
     /// Control points whose value may change at all, unless all may.
     allowed: Option<Vec<bool>>,
 }
@@ -49,12 +47,11 @@ impl Awake {
             damaged: vec![true; cells],
             candidates: Vec::new(),
             is_candidate: vec![false; control_points],
-            driven: vec![false; cells],
             allowed: None,
         }
     }
 
-    /// Lets these control points alone change. If there are none, nothing is computed.
+    /// Lets these control points alone change.
     pub(super) fn allow(&mut self, allowed: Vec<bool>) {
         if !allowed.contains(&true) {
             self.sleep();
@@ -63,19 +60,23 @@ impl Awake {
         self.allowed = Some(allowed);
     }
 
-    /// Cells whose energy may reach the threshold soon.
-    pub(crate) fn driven(&self) -> &[bool] {
-        &self.driven
+    /// Cells whose driving energy is more than half of the threshold.
+    pub(crate) fn near_the_threshold(&self, drive: &[Lane]) -> impl Iterator<Item = usize> {
+        let span = drive.len() / self.computed.len();
+        (0..self.computed.len()).filter(move |&cell| {
+            let half = 0.5 * self.threshold_of(cell);
+            let drive = || drive[cell * span..(cell + 1) * span].iter().flat_map(|energy| energy.0);
+            self.computed[cell] && drive().any(|energy| energy > half)
+        })
+    }
+
+    fn threshold_of(&self, cell: usize) -> f64 {
+        self.threshold[if self.threshold.len() > 1 { cell } else { 0 }]
     }
 
     /// Chooses the cells to compute: tiles where a cell is `driven` or c below 1, and those around them.
     /// Spans that a boundary or a slit cuts are always computed.
-    pub(crate) fn choose(&mut self, lattice: &Lattice, driven: Vec<bool>, phase: &[f64]) {
-        self.driven = driven;
-        if self.allowed.as_ref().is_some_and(|allowed| !allowed.contains(&true)) {
-            return self.computed.fill(false);
-        }
-        let driven = &self.driven;
+    pub(crate) fn choose(&mut self, lattice: &Lattice, driven: &[bool], phase: &[f64]) {
         let tiles = lattice.tiles.len();
         let tables = lattice.patch_strips();
         let mut near = vec![false; tables * tiles];
@@ -136,7 +137,7 @@ impl Awake {
         let cells = || (0..self.computed.len()).filter(|&cell| self.computed[cell]);
         let is_awake = |cell: usize| {
             let drive = &drive[cell * span..(cell + 1) * span];
-            let threshold = self.threshold[if self.threshold.len() > 1 { cell } else { 0 }];
+            let threshold = self.threshold_of(cell);
             self.everything
                 || drive.iter().any(|energy| energy.0.iter().any(|&energy| energy > threshold))
                 || is_damaged(lattice, cell, phase)
@@ -176,7 +177,7 @@ impl Awake {
 
     /// Heap memory, bytes.
     pub(super) fn bytes(&self) -> usize {
-        8 * (self.candidates.len() + self.threshold.len()) + 4 * self.computed.len() + 2 * self.is_candidate.len()
+        8 * (self.candidates.len() + self.threshold.len()) + 3 * self.computed.len() + 2 * self.is_candidate.len()
     }
 }
 

@@ -140,7 +140,7 @@ impl LatticeFracture {
             sweep_with(kinematics, lattice, fields, &mut kernels, Some(forces));
             self.intact_energy = Some(kernels.iter().map(|k| k.energy.sum()).sum());
             let before = awake.computed().to_vec();
-            awake.choose(lattice, reached, phase);
+            awake.choose(lattice, &reached, phase);
             let left = before.iter().zip(awake.computed()).map(|(before, now)| *before && !now);
             let left = self.history.chunks_mut(span).zip(left).filter(|(_, left)| *left);
             left.for_each(|(drive, _)| drive.fill(Lane::ZERO)); // below the level, and not known

@@ -126,9 +126,9 @@ impl Regions {
     /// Refines the tiles where the energy nears the threshold of a model that has one, and a span beside them.
     fn mark_driven(&mut self, level: usize, frame: &TotalFrame, spans: [usize; 2]) -> bool {
         let lattice = &frame.lattice;
-        let awake = frame.fracture.as_ref().and_then(|fracture| fracture.field.awake());
-        let cells = awake.map_or(&[][..], |awake| awake.driven()).iter().enumerate().filter(|(_, driven)| **driven);
-        let places = cells.map(|(cell, _)| [cell % lattice.tiles.len() * LANES, cell / lattice.tiles.len()]);
+        let cells = frame.fracture.iter().filter_map(|f| Some(f.field.awake()?.near_the_threshold(&f.history)));
+        let tiles = lattice.tiles.len();
+        let places = cells.flatten().map(|cell| [cell % tiles * LANES, cell / tiles]);
         let around = |place: usize, size: usize, d: usize| place.saturating_sub(1)..(place + size + 1).min(spans[d]);
         let ranges: Vec<_> = places.map(|[i, j]| [around(i, LANES, 0), around(j, 1, 1)]).collect();
         ranges.into_iter().fold(false, |any, ranges| self.mark(level, ranges) | any)
