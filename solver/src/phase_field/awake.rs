@@ -64,7 +64,8 @@ impl Awake {
     pub(crate) fn near_the_threshold(&self, drive: &[Lane]) -> impl Iterator<Item = usize> {
         let span = drive.len() / self.computed.len();
         (0..self.computed.len()).filter(move |&cell| {
-            let half = 0.5 * self.threshold_of(cell);
+            let part = fault!("refined-after-the-crack", 0.5 => f64::INFINITY);
+            let half = part * self.threshold_of(cell);
             let drive = || drive[cell * span..(cell + 1) * span].iter().flat_map(|energy| energy.0);
             self.computed[cell] && drive().any(|energy| energy > half)
         })
