@@ -52,7 +52,7 @@ use crate::splines::patch::Patch;
 use boundary_functions::BoundaryFunctions;
 pub use constraint::ContactConstraint;
 use constraint::Impulse;
-use encounter::{Encounter, Squares};
+use encounter::{Encounter, Sight, Squares};
 use motion::{AHEAD, MOST, TooFast};
 pub(crate) use rigid::RigidBody;
 use surface::Center;
@@ -65,11 +65,8 @@ const FACING: f64 = -0.5;
 /// the flanks of a wedge of half angle 3° or more. Beside a right corner that is pressed in the faces of the
 /// corner do not meet the face beneath.
 const CUTTING: f64 = -0.05;
-/// Gap up to which a constraint is looked at, in spans, unless more could close in a step. What a segment
-/// measures counts by how much smaller its gap is.
+/// Gap up to which a constraint is looked at, in spans, unless more could close in a step.
 const NEAR: f64 = 0.1;
-/// Part of a span by which a segment at that gap counts.
-const LEAST: f64 = 1e-3;
 
 /// What contact took and gave so far, J per metre of thickness.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -197,14 +194,8 @@ impl ContactSolver {
                 }
                 let middle = [0, 1].map(|d| position[d] + 0.5 * sign * nearest.distance * normal[d]);
                 let square = self.squares.of(middle);
-                let weight = near - nearest.distance + LEAST * self.reach;
-                let sums: &mut Encounter = squares.entry(square).or_insert_with(|| Encounter::new(bodies, square));
-                sums.count += weight;
-                sums.gap += weight * nearest.distance;
-                for d in 0..2 {
-                    sums.position[d] += weight * middle[d];
-                    sums.normal[d] += weight * normal[d];
-                }
+                let sight = Sight { position: middle, gap: nearest.distance, normal };
+                squares.entry(square).or_insert_with(|| Encounter::new(bodies, square, self.reach)).see(sight);
             }
         }
         Ok(Encounter::merged(squares.into_values(), &self.squares))
@@ -220,15 +211,7 @@ impl ContactSolver {
             Some(body) => Some(BoundaryFunctions::new(body, position)?),
             None => None,
         };
-        Some(ContactConstraint {
-            gap: encounter.gap / encounter.count,
-            bodies: pair,
-            square,
-            position,
-            normal,
-            on_a,
-            on_b,
-        })
+        Some(ContactConstraint { gap: encounter.gap(), bodies: pair, square, position, normal, on_a, on_b })
     }
 
     /// Where bodies are near each other.

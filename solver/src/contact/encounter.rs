@@ -6,6 +6,12 @@ use crate::splines::patch::Patch;
 
 /// Distance of two encounters along the boundaries, and across them, below which they are one, in squares.
 const APART: f64 = 0.6;
+/// Difference of gaps, in spans, by which the larger one counts least; and how much that is. Within it a curve
+/// is flat to a few tenths of a span.
+const DEPTH: f64 = 0.01;
+const LEAST: f64 = 0.01;
+/// Overlap, in spans, by which a segment counts twice: a wedge meets more than its tip.
+const OVERLAP: f64 = 0.1;
 
 /// Squares around the crossings of knot lines, as large as a span: a plane of symmetry along a knot line cuts
 /// none.
@@ -38,28 +44,58 @@ impl Squares {
     }
 }
 
-/// What the segments of two bodies see of each other whose middle of the gap lies in a square: sums.
-pub(super) struct Encounter {
-    pub bodies: [usize; 2],
-    pub square: [usize; 2],
-    pub count: f64,
+/// What a segment sees of another boundary.
+#[derive(Clone, Copy)]
+pub(super) struct Sight {
     pub position: [f64; 2],
     pub gap: f64,
     pub normal: [f64; 2],
 }
 
+/// What the segments of two bodies see of each other whose middle of the gap lies in a square.
+pub(super) struct Encounter {
+    pub bodies: [usize; 2],
+    pub square: [usize; 2],
+    seen: Vec<Sight>,
+    /// Length of a span, m.
+    span: f64,
+}
+
 impl Encounter {
-    pub(super) fn new(bodies: [usize; 2], square: [usize; 2]) -> Self {
-        Self { bodies, square, count: 0.0, position: [0.0; 2], gap: 0.0, normal: [0.0; 2] }
+    pub(super) fn new(bodies: [usize; 2], square: [usize; 2], span: f64) -> Self {
+        Self { bodies, square, seen: Vec::new(), span }
+    }
+
+    pub(super) fn see(&mut self, sight: Sight) {
+        self.seen.push(sight);
+    }
+
+    /// Mean over the segments, with weights: a curve touches a line at one place, not in all of a square.
+    fn mean<const N: usize>(&self, value: impl Fn(&Sight) -> [f64; N]) -> [f64; N] {
+        let least = larger(self.seen.iter().map(|sight| sight.gap).fold(f64::INFINITY, smaller), 0.0);
+        let (mut sum, mut count) = ([0.0; N], 0.0);
+        for sight in &self.seen {
+            let (open, overlap) = (larger(sight.gap, 0.0) - least, larger(-sight.gap, 0.0));
+            let depth = fault!("all-segments-of-a-square-count", DEPTH => f64::INFINITY) * self.span;
+            let weight = larger(1.0 - open / depth, LEAST) + overlap / (OVERLAP * self.span);
+            let value = value(sight);
+            count += weight;
+            (0..N).for_each(|n| sum[n] += weight * value[n]);
+        }
+        sum.map(|sum| sum / count)
     }
 
     pub(super) fn position(&self) -> [f64; 2] {
-        self.position.map(|sum| sum / self.count)
+        self.mean(|sight| sight.position)
+    }
+
+    pub(super) fn gap(&self) -> f64 {
+        self.mean(|sight| [sight.gap])[0]
     }
 
     /// Mean normal, unless the normals cancel each other.
     pub(super) fn direction(&self) -> Option<[f64; 2]> {
-        unit(self.normal, self.count)
+        unit(self.mean(|sight| sight.normal), 1.0)
     }
 
     /// Whether both are parts of what one square should see: along the border of two rows of squares,
@@ -86,14 +122,7 @@ impl Encounter {
         for part in found {
             match merged.iter_mut().find(|whole| part.is_part_of(whole, squares)) {
                 None => merged.push(part),
-                Some(whole) => {
-                    whole.count += part.count;
-                    whole.gap += part.gap;
-                    for d in 0..2 {
-                        whole.position[d] += part.position[d];
-                        whole.normal[d] += part.normal[d];
-                    }
-                }
+                Some(whole) => whole.seen.extend(part.seen),
             }
         }
         merged

@@ -123,7 +123,7 @@ impl Regions {
         any
     }
 
-    /// Refines the tiles where the energy nears the threshold of a model that has one, and a span beside them.
+    /// Refines the tiles where the energy nears the threshold of a model that has one, and a span beside.
     fn mark_driven(&mut self, level: usize, frame: &TotalFrame, spans: [usize; 2]) -> bool {
         let lattice = &frame.lattice;
         let cells = frame.fracture.iter().filter_map(|f| Some(f.field.awake()?.near_the_threshold(&f.history)));
