@@ -6,8 +6,8 @@ use crate::splines::patch::Patch;
 
 /// Distance of two encounters along the boundaries, and across them, below which they are one, in squares.
 const APART: f64 = 0.6;
-/// Difference of gaps, in spans, by which the larger one counts least; and how much that is. Within it a curve
-/// is flat to a few tenths of a span.
+/// Difference of gaps, in spans, by which the larger one counts least; and how much that is. Within it a
+/// curve is flat to a few tenths of a span.
 const DEPTH: f64 = 0.01;
 const LEAST: f64 = 0.01;
 /// Overlap, in spans, by which a segment counts twice: a wedge meets more than its tip.

@@ -12,10 +12,10 @@
 //! (`levels/regions.rs`). The phase field of a model with a threshold is on the finest level alone, and 1
 //! elsewhere. Tiles are then refined where c is below 1, and where the energy nears the threshold.
 //!
-//! Fields are copied, so that they do not change and momentum is kept. The change of the energies, which comes
-//! from the lumped mass, the new points and c there, is a term of the ledger. The critical step is that of
-//! the finest level over the whole mesh: the functions in use are combinations of its own, and the lumped
-//! mass is convex.
+//! Fields are copied, so that they do not change and momentum is kept. The change of the energies, which
+//! comes from the lumped mass, the new points and c there, is a term of the ledger. The critical step is
+//! that of the finest level over the whole mesh: the functions in use are combinations of its own, and the
+//! lumped mass is convex.
 
 mod copies;
 mod regions;
