@@ -48,9 +48,9 @@ const HELD_TWICE: &str = "conditions on parts shorter than two cells, which join
                           join the parts, or remove one of the two";
 const PART_PARTS: &str = "parts of a side that meet in a control point: leave a span between them, or give both the same \
                           motion";
-const NO_EQUILIBRIUM: &str = "a load beyond the strength of the body, a motion that nothing holds, as about a hinge, or a \
-                              seed or slit that cuts a part off: lower the load, hold the body, shorten the crack, or leave \
-                              start.equilibrium out";
+const NO_EQUILIBRIUM: &str = "a load beyond the strength of the body, a motion that nothing holds, as about a hinge, a seed or \
+                              slit that cuts a part off, or functions of degree 4 beside edges that cut the mesh: lower the \
+                              load, hold the body, shorten the crack, use degree 2 or 3, or leave start.equilibrium out";
 const UNBALANCED: &str =
     "a body that is not held: add a [[boundary]], balance the loads, or leave start.equilibrium out";
 pub(super) const BARE: &str = "a load or condition acts where there is no material any more";

@@ -189,7 +189,11 @@ fn solver(scene: &Scene, findings: &mut Findings) {
     if scene.solver.phase_field_interval == PhaseFieldInterval::Steps(1) {
         return;
     }
-    let bounded = scene.materials.values().filter_map(|m| m.fracture.as_ref()).any(|f| f.model.has_threshold());
+    let breaks = || scene.materials.values().filter_map(|m| m.fracture.as_ref());
+    if breaks().next().is_none() {
+        findings.warn("solver.phase_field_interval", "has no effect where no material breaks; remove it");
+    }
+    let bounded = breaks().any(|fracture| fracture.model.has_threshold());
     if scene.analysis.frame == Frame::Updated || bounded {
         let message = "in the updated frame, and with at1 or pf-czm, the phase field is solved for in every step";
         findings.error("solver.phase_field_interval", message, "remove the key, or use at2 in the total frame");
