@@ -7,7 +7,10 @@ use fisura::dynamics::time_plan::TimePlan;
 use fisura::linear_algebra::extremes::larger;
 use fisura::material::elasticity::ElasticModuli;
 use fisura::particles::spans::{largest_spans, smallest_span};
-use fisura::scene::{Body, Crack, CrackModel, Fracture, Frame, Material, Plane, Scene, Split, Transfer};
+use fisura::scene::{
+    Body, Crack, CrackModel, Fracture, Frame, Material, PhaseFieldInterval, Plane, Scene, SolverSettings, Split,
+    Transfer,
+};
 use fisura::simulation::{Extent, Simulation};
 use fisura::validate::expected_size;
 use fisura_reports::number::{duration, plain};
@@ -90,6 +93,9 @@ struct Findings {
     transfer: Option<String>,
     bodies: Vec<BodyFindings>,
     materials: BTreeMap<String, MaterialFindings>,
+    /// How the phase field is solved; absent without fracture.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    phase_field: Option<String>,
     degree: [usize; 2],
     cells: [usize; 2],
     /// How often spans are halved near cracks.
@@ -229,6 +235,7 @@ impl Findings {
             transfer: by_points.then(|| transfer(scene.analysis.transfer)),
             bodies: bodies(scene),
             materials: materials(scene, span_m[0].max(span_m[1]) / f64::from(1_u32 << scene.mesh.halvings)),
+            phase_field: materials_in_use(scene).any(|(_, m)| m.fracture.is_some()).then(|| solves(&scene.solver)),
             degree: scene.mesh.degree,
             cells: spans(&scene.mesh),
             halvings: Some(scene.mesh.halvings).filter(|halvings| *halvings > 0),
@@ -263,6 +270,7 @@ impl Findings {
         rows.extend(self.transfer.iter().map(|transfer| ("transfer", transfer.clone())));
         rows.extend(self.bodies.iter().map(|body| ("body", body.text())));
         rows.extend(self.materials.iter().map(|(name, material)| ("material", material.text(name))));
+        rows.extend(self.phase_field.iter().map(|solves| ("phase field", solves.clone())));
         let [hx, hy] = self.span_m.map(|h| plain(1e3 * h, 5));
         let critical = self.critical_step_s.map_or("none, nothing can move".to_string(), second);
         let time = format!("{} in {} steps of {}", second(self.end_time_s), self.steps, second(self.time_step_s));
@@ -343,7 +351,18 @@ fn words(fracture: &Fracture) -> String {
     let random = fracture.random.map(|random| {
         format!(", Gc random (Weibull, modulus {}, correlation {:e} m)", random.modulus, random.correlation)
     });
-    [Some(split), anisotropy, random].into_iter().flatten().collect()
+    let of_mesh = fracture.mesh_toughness.then(|| ", Gc less what cracks cost on this mesh".to_string());
+    [Some(split), anisotropy, random, of_mesh].into_iter().flatten().collect()
+}
+
+/// How the phase field is solved, in words.
+fn solves(settings: &SolverSettings) -> String {
+    let interval = match settings.phase_field_interval {
+        PhaseFieldInterval::Steps(1) => "in every step".to_string(),
+        PhaseFieldInterval::Steps(steps) => format!("once in {steps} steps"),
+        PhaseFieldInterval::Automatic => "once in up to 4 steps".to_string(),
+    };
+    format!("solved {interval}, tolerance {:e}", settings.phase_field_tolerance)
 }
 
 /// Largest stress of a uniform bar (Pa), as if all of its energy drove: `9/16 √(E Gc/(6 l0))`, with AT1 `√(3
@@ -393,10 +412,12 @@ fn slit(scene: &Scene, body: &Body, crack: &Crack) -> Option<SlitFindings> {
     Some(SlitFindings { drawn_to_m: to, ends_before_m })
 }
 
-/// Materials in use.
+fn materials_in_use(scene: &Scene) -> impl Iterator<Item = (&String, &Material)> {
+    scene.materials.iter().filter(|(name, _)| scene.bodies.iter().any(|b| b.material == **name))
+}
+
 fn materials(scene: &Scene, span: f64) -> BTreeMap<String, MaterialFindings> {
-    let used = scene.materials.iter().filter(|(name, _)| scene.bodies.iter().any(|b| b.material == **name));
-    used.map(|(name, material)| {
+    let of = |(name, material): (&String, &Material)| {
         let moduli = ElasticModuli::new(material, scene.analysis.plane);
         let findings = MaterialFindings {
             wave_speed_m_per_s: moduli.dilatational_speed(material.density),
@@ -405,6 +426,6 @@ fn materials(scene: &Scene, span: f64) -> BTreeMap<String, MaterialFindings> {
             tensile_strength_pa: material.fracture.as_ref().map(|f| strength(material, f, scene.analysis.plane)),
         };
         (name.clone(), findings)
-    })
-    .collect()
+    };
+    materials_in_use(scene).map(of).collect()
 }
