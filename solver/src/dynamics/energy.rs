@@ -70,8 +70,8 @@ pub struct Sample {
     pub angular_momentum: f64,
     /// Time step, s.
     pub time_step: f64,
-    /// How many pieces the bodies are in, if they may fall into fragments.
-    pub fragments: Option<usize>,
+    /// Area of every part that the bodies are in before any strain, m², if parts are counted.
+    pub fragments: Option<Vec<f64>>,
     /// Every body for itself, if the scene records that.
     pub bodies: Option<BodySamples>,
 }
@@ -205,7 +205,11 @@ impl Sample {
         row.push(("angular_momentum", self.angular_momentum));
         row.push(("time_step_s", self.time_step));
         row.extend(fracture.map(|f| ("phase_field_iterations", f.iterations as f64)));
-        row.extend(self.fragments.map(|count| ("fragments", count as f64)));
+        if let Some(areas) = &self.fragments {
+            let of_all = |choose: fn(f64, f64) -> f64| areas.iter().copied().reduce(choose).unwrap_or(0.0);
+            row.push(("fragments", areas.len() as f64));
+            row.extend([("smallest_fragment_m2", of_all(smaller)), ("largest_fragment_m2", of_all(larger))]);
+        }
         row
     }
 
@@ -232,7 +236,10 @@ impl Sample {
             conditions: joined(self.conditions, other.conditions),
             probes: self.probes.into_iter().chain(other.probes).collect(),
             j_integrals: self.j_integrals.into_iter().chain(other.j_integrals).collect(),
-            fragments: self.fragments.zip(other.fragments).map(|(a, b)| a + b).or(self.fragments).or(other.fragments),
+            fragments: match (self.fragments, other.fragments) {
+                (Some(a), Some(b)) => Some([a, b].concat()),
+                (a, b) => a.or(b),
+            },
             momentum: [0, 1].map(|d| self.momentum[d] + other.momentum[d]),
             angular_momentum: self.angular_momentum + other.angular_momentum,
             ..self

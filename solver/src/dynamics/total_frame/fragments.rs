@@ -20,8 +20,8 @@ struct Content {
 }
 
 impl TotalFrame {
-    /// Number of fragments, if they are to be counted.
-    pub(super) fn fragments(&self) -> Option<usize> {
+    /// Area of every fragment (m²), if they are to be counted.
+    pub(super) fn fragments(&self) -> Option<Vec<f64>> {
         let fracture = self.fracture.as_ref().filter(|_| self.counts_fragments)?;
         let control_values = self.lattice.with_copies(fracture.field.control_values().to_vec());
         let number = |d: usize, first: usize| self.patch.spaces[d].spans().partition_point(|span| span.first < first);
@@ -37,7 +37,7 @@ impl TotalFrame {
         }
         let least = (LEAST * fracture.model.length_scale).powi(2);
         spans.retain(|_, content| content.phase >= fault!("cracks-count-as-whole", WHOLE => -1.0) * content.area);
-        let mut count = 0;
+        let mut areas = Vec::new();
         while let Some((seed, content)) = spans.pop_first() {
             let (mut area, mut next) = (content.area, vec![seed]);
             while let Some([column, row]) = next.pop() {
@@ -49,8 +49,8 @@ impl TotalFrame {
                     }
                 }
             }
-            count += usize::from(area >= least);
+            areas.extend(Some(area).filter(|area| *area >= least));
         }
-        Some(count)
+        Some(areas)
     }
 }

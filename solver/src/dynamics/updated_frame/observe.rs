@@ -47,7 +47,7 @@ impl UpdatedFrame {
             sample.external_work += work;
             sample.contact = Some(ContactSample { loss, friction });
         }
-        Sample { bodies: recorded, fragments: self.count_fragments(), ..sample.for_thickness(self.thickness) }
+        Sample { bodies: recorded, fragments: self.fragment_areas(), ..sample.for_thickness(self.thickness) }
     }
 
     /// The fields of the bodies that deform: of those that are whole, or of fragments.

@@ -7,9 +7,10 @@ use crate::checkpoint::{Archive, StateError};
 use crate::dynamics::failure::Failure;
 
 impl UpdatedFrame {
-    /// How many fields there are, if bodies may fall into fragments.
-    pub(super) fn count_fragments(&self) -> Option<usize> {
-        self.fragments.as_ref().map(|_| self.fields.len())
+    /// Area of every field (m²), if bodies may fall into fragments.
+    pub(super) fn fragment_areas(&self) -> Option<Vec<f64>> {
+        let area = |field: &DiscreteField| field.points().iter().map(|point| point.volume).sum();
+        self.fragments.as_ref().map(|_| self.fields.iter().map(area).collect())
     }
 
     /// Parts the bodies that are cracked through, where a check is due; `dt` is the step in use, s.

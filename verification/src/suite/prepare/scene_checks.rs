@@ -231,7 +231,7 @@ fn blank_history(scene: &Scene) -> Table {
         transfer_loss: (scene.analysis.frame == Frame::Updated).then_some(0.0),
         refinement: (scene.mesh.halvings > 0).then_some(0.0),
         fragments: (scene.output.fragments || scene.contact.as_ref().is_some_and(|contact| contact.fragments))
-            .then_some(0),
+            .then(Vec::new),
         conditions: blank_conditions(scene),
         probes: scene.output.probes.iter().map(|probe| ProbeSample::new(&probe.name, [0.0; 7])).collect(),
         j_integrals: scene.output.j_integrals.iter().map(|j| (column(j), f64::NAN)).collect(),
