@@ -76,20 +76,16 @@ impl Awake {
     }
 
     /// Chooses the cells to compute: tiles where a cell is `driven` or c below 1, and those around them.
-    /// Spans that a boundary or a slit cuts are always computed.
+    /// Spans that a boundary or a slit cuts are always computed, and wake the tiles where they lie.
     pub(crate) fn choose(&mut self, lattice: &Lattice, driven: &[bool], phase: &[f64]) {
-        let tiles = lattice.tiles.len();
-        let tables = lattice.patch_strips();
-        let mut near = vec![false; tables * tiles];
-        for strip in 0..tables {
-            for tile in 0..tiles {
-                let cells = || lattice.strip_rows(strip).map(|row| row * tiles + tile);
-                let damaged = |cell| self.computed[cell] && is_damaged(lattice, cell, phase);
-                if cells().any(|cell| driven[cell]) || cells().any(damaged) {
-                    for around in strip.saturating_sub(1)..(strip + 2).min(tables) {
-                        near[around * tiles..][tile.saturating_sub(1)..(tile + 2).min(tiles)].fill(true);
-                    }
-                }
+        let (strips, tiles) = (lattice.patch_strips(), lattice.tiles.len());
+        let mut near = vec![false; strips * tiles];
+        let is_awake = |cell: usize| driven[cell] || (self.computed[cell] && is_damaged(lattice, cell, phase));
+        for [strip, tile] in
+            (0..driven.len()).filter(|&cell| is_awake(cell)).flat_map(|cell| lattice.tiles_of_cell(cell))
+        {
+            for around in strip.saturating_sub(1)..(strip + 2).min(strips) {
+                near[around * tiles..][tile.saturating_sub(1)..(tile + 2).min(tiles)].fill(true);
             }
         }
         let everything = self.everything;
