@@ -1,7 +1,7 @@
 //! Lagrange multipliers along edges of a body, and the moments of its motion that they prescribe.
 //!
 //! A multiplier is a spline μ along the edge, of the degree of the body's splines less one, over parts at
-//! least [`PART`] spans long. The moments of the motion with each of them are those of the prescribed one,
+//! least [`PART`] spans long, or as below. The moments of the motion with each of them are those of the prescribed one,
 //! at every step and to round-off:
 //!
 //! ```text
@@ -10,25 +10,37 @@
 //! (B M⁻¹ Bᵀ) λ = B M⁻¹ (f_ext − f_int) − B a_prescribed
 //! ```
 //!
+//! Along an edge that lies along the mesh, within a part of a span, μ are all functions that the body has
+//! there. Between multipliers that are fewer the edge buckles under a pressure, since a multiplier acts in
+//! the same direction however the edge turns. Along any other edge as many would hold all of the spans that
+//! it cuts.
+//!
 //! The multipliers remove directions from the operator and add no stiffness, so the critical step is never
 //! shorter than that of the free body. They do work on what moves only: there is no energy of a penalty.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use faer::sparse::{SparseColMat, Triplet};
 
-use crate::dynamics::surface::SurfacePoint;
+use crate::dynamics::surface::{SurfacePoint, edge_ends};
 use crate::linear_algebra::cholesky::LowerFactor;
 use crate::linear_algebra::control_grid::VectorField;
-use crate::linear_algebra::extremes::larger;
-use crate::scene::Hold;
+use crate::linear_algebra::extremes::{larger, smaller};
+use crate::scene::{Body, EdgeCondition, Hold};
 use crate::splines::patch::Patch;
-use crate::splines::spline::SplineSpace;
+use crate::splines::spline::{Span, SplineSpace};
 
 /// Least length of a part of an edge over which multipliers are polynomials, in spans.
 const PART: f64 = 2.0;
+/// Deviation of an edge from a line along the mesh that counts as none, in spans.
+const STRAIGHT: f64 = 0.1;
+/// Part of a span at an end of such an edge that it has to cover for the last function there to count.
+const COVERED: f64 = 0.5;
 /// Parts by which an edge may be too short for their number.
 const ROUND_OFF: f64 = 1e-9;
+/// Distance between ends of edges that counts as none, in lengths of the edge.
+const NEAR: f64 = 1e-9;
 /// Yield of a multiplier at control points that can move, of that at all of them, that counts as none.
 const YIELDS: f64 = 1e-9;
 
@@ -144,7 +156,7 @@ impl Moment {
 pub(in crate::dynamics) fn moments_of(
     condition: usize,
     hold: Hold,
-    space: &SplineSpace,
+    Splines { space, rows }: &Splines<'_>,
     points: impl Iterator<Item = (SurfacePoint, Vec<(usize, f64)>)>,
 ) -> Result<Vec<Moment>, [f64; 2]> {
     let directions: &[Direction] = match hold {
@@ -154,15 +166,15 @@ pub(in crate::dynamics) fn moments_of(
         Hold::Components([false, false]) => &[],
         Hold::Normal => &[|normal| normal],
     };
-    let mut shares = vec![BTreeMap::<(usize, usize), f64>::new(); directions.len() * space.dimension()];
+    let mut shares = vec![BTreeMap::<(usize, usize), f64>::new(); directions.len() * rows.len()];
     let mut totals = vec![[0.0; 2]; shares.len()];
     for (point, functions) in points {
         let span = space.find_span(point.along).ok_or(point.position)?;
         let multipliers = space.shape_functions(span, point.along).value;
         for (k, multiplier) in multipliers[..=space.degree()].iter().enumerate() {
-            let row = space.spans()[span].first + k;
+            let row = (space.spans()[span].first + k).clamp(rows.start, rows.end - 1) - rows.start;
             for (set, along) in directions.iter().enumerate() {
-                let (row, direction) = (set * space.dimension() + row, along(point.normal));
+                let (row, direction) = (set * rows.len() + row, along(point.normal));
                 for component in (0..2).filter(|&d| direction[d] != 0.0) {
                     let weight = multiplier * point.length * direction[component];
                     totals[row][component] += weight;
@@ -178,6 +190,55 @@ pub(in crate::dynamics) fn moments_of(
         Moment { condition, shares, total }
     };
     Ok(shares.into_iter().zip(totals).map(moment).collect())
+}
+
+/// Splines of a coordinate along an edge for multipliers, and the rows of these that there are: functions
+/// before and after them act with the nearest.
+pub(in crate::dynamics) struct Splines<'a> {
+    space: &'a SplineSpace,
+    rows: Range<usize>,
+}
+
+impl<'a> Splines<'a> {
+    /// All of a space.
+    pub(in crate::dynamics) fn all(space: &'a SplineSpace) -> Self {
+        Self { space, rows: 0..space.dimension() }
+    }
+
+    /// The functions that a body has along an edge through positions (m), with the direction of the mesh in
+    /// which it lies; `None` if it lies in none of them, or is too short.
+    pub(in crate::dynamics) fn of_mesh(
+        patch: &'a Patch,
+        positions: impl Iterator<Item = [f64; 2]> + Clone,
+    ) -> Option<(usize, Self)> {
+        let ends = |d: usize| {
+            let along = positions.clone().map(|position| position[d]);
+            along.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], x| [smaller(least, x), larger(most, x)])
+        };
+        let straight = |&d: &usize| ends(1 - d)[1] - ends(1 - d)[0] <= STRAIGHT * patch.shortest_span();
+        let d = (0..2).filter(|_| patch.geometry.is_none()).find(straight)?;
+        let (space, [from, to]) = (&patch.spaces[d], ends(d));
+        let [first, last] = [from, to].map(|end| space.find_span(end).map(|span| &space.spans()[span]));
+        let (first, last) = (first?, last?);
+        let beyond = |covered: f64, span: &Span| usize::from(covered < COVERED * span.length());
+        let start = first.first + beyond(first.right - from, first);
+        let end = last.first + space.degree() + 1 - beyond(to - last.left, last);
+        (start + space.degree() < end).then_some((d, Self { space, rows: start..end }))
+    }
+}
+
+/// Whether an edge has an end in common with an earlier one of which the same component is prescribed. With
+/// all functions of the body along both, their moments would not be independent.
+pub(in crate::dynamics) fn meets_an_earlier_edge(body: &Body, conditions: &[EdgeCondition], number: usize) -> bool {
+    let (own, others) = (&conditions[number], &conditions[..number]);
+    let ends = |condition: &EdgeCondition| edge_ends(body, &condition.edge);
+    let [a, b] = ends(own);
+    let near = NEAR * (b[0] - a[0]).hypot(b[1] - a[1]);
+    let same_component = |other: &&EdgeCondition| (0..2).any(|d| own.components()[d] && other.components()[d]);
+    others.iter().filter(same_component).any(|other| {
+        let apart = |p: [f64; 2], q: [f64; 2]| (p[0] - q[0]).hypot(p[1] - q[1]);
+        ends(other).iter().any(|&end| apart(end, a) <= near || apart(end, b) <= near)
+    })
 }
 
 /// Splines along an edge for multipliers; linear on an edge that is shorter than a part.

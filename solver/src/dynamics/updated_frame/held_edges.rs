@@ -14,7 +14,9 @@
 
 use super::grid::{ImposedEnergy, NodalFields};
 use crate::checkpoint::{Archive, StateError};
-use crate::dynamics::edge_moments::{Moment, Multipliers, moments_of, multiplier_space};
+use crate::dynamics::edge_moments::{
+    Moment, Multipliers, Splines, meets_an_earlier_edge, moments_of, multiplier_space,
+};
 use crate::dynamics::energy::ConditionSample;
 use crate::dynamics::failure::Failure;
 use crate::dynamics::reaction::Reaction;
@@ -44,6 +46,8 @@ pub(super) struct HeldEdges {
 #[derive(Debug, Clone)]
 struct HeldEdge {
     condition: EdgeCondition,
+    /// Whether it has no end in common with an earlier one.
+    alone: bool,
     space: SplineSpace,
     points: Vec<(Follower, SurfacePoint)>,
     reaction: Reaction,
@@ -58,20 +62,22 @@ impl HeldEdges {
         body: &Body,
         conditions: impl Iterator<Item = EdgeCondition>,
     ) -> Option<Box<Self>> {
-        let edge = |condition: EdgeCondition| {
+        let conditions: Vec<_> = conditions.collect();
+        let edge = |(number, condition): (usize, &EdgeCondition)| {
             let parts = smooth_parts(patch, body, &condition.edge);
             let on_material = parts.iter().flatten().filter(|point| body.shape.contains(point.inner));
             let points: Vec<_> = on_material.map(|point| (Follower::new(point.position), *point)).collect();
             let reaction = Reaction::at_start(condition.prescribed.start()[1]);
             (!points.is_empty()).then(|| HeldEdge {
+                alone: !meets_an_earlier_edge(body, &conditions, number),
                 space: multiplier_space(patch, &parts),
-                condition,
+                condition: condition.clone(),
                 points,
                 reaction,
                 struck: 0.0,
             })
         };
-        let edges: Vec<_> = conditions.filter_map(edge).collect();
+        let edges: Vec<_> = conditions.iter().enumerate().filter_map(edge).collect();
         (!edges.is_empty()).then(|| Box::new(Self { edges, multipliers: None, step: 0.0 }))
     }
 
@@ -223,9 +229,16 @@ impl HeldEdges {
                 place.for_each_function(patch, nodes.grid, |at, n| values.push((at, n)));
                 values
             };
-            let points = edge.points.iter().map(|(place, point)| (*point, functions(place)));
             let lost = |place| Failure::LostCondition { body: 0, condition: number, place };
-            moments.extend(moments_of(number, edge.condition.hold, &edge.space, points).map_err(lost)?);
+            let positions = edge.points.iter().map(|(place, _)| place.position);
+            let of_mesh = edge.alone.then(|| Splines::of_mesh(patch, positions)).flatten();
+            let direction = of_mesh.as_ref().map(|(d, _)| *d);
+            let points = edge.points.iter().map(|(place, point)| {
+                let along = direction.map_or(point.along, |d| place.position[d]);
+                (SurfacePoint { along, ..*point }, functions(place))
+            });
+            let splines = of_mesh.map_or(Splines::all(&edge.space), |(_, splines)| splines);
+            moments.extend(moments_of(number, edge.condition.hold, &splines, points).map_err(lost)?);
         }
         let inverse = |moment: &Moment| -> Option<Vec<f64>> {
             let free = |(at, component)| if nodes.fixed().contains(&(at, component)) { 0.0 } else { 1.0 };
