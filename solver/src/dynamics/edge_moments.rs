@@ -29,18 +29,19 @@ use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::extremes::{larger, smaller};
 use crate::scene::{Body, EdgeCondition, Hold};
 use crate::splines::patch::Patch;
-use crate::splines::spline::{Span, SplineSpace};
+use crate::splines::spline::SplineSpace;
 
 /// Least length of a part of an edge over which multipliers are polynomials, in spans.
 const PART: f64 = 2.0;
 /// Deviation of an edge from a line along the mesh that counts as none, in spans.
 const STRAIGHT: f64 = 0.1;
-/// Part of a span at an end of such an edge that it has to cover for the last function there to count.
-const COVERED: f64 = 0.5;
 /// Parts by which an edge may be too short for their number.
 const ROUND_OFF: f64 = 1e-9;
 /// Distance between ends of edges that counts as none, in lengths of the edge.
 const NEAR: f64 = 1e-9;
+/// Part of the compliance of a multiplier that is added to it, so that moments which nearly follow from
+/// others do no harm.
+const SOFTNESS: f64 = 1e-13;
 /// Yield of a multiplier at control points that can move, of that at all of them, that counts as none.
 const YIELDS: f64 = 1e-9;
 
@@ -68,10 +69,9 @@ pub(in crate::dynamics) struct Multipliers {
 }
 
 impl Multipliers {
-    /// A part of the compliance of every multiplier, its `softness`, is added to it. `None` if the moments
-    /// are not independent.
-    pub(in crate::dynamics) fn new(moments: Vec<Moment>, inverse: Vec<Vec<f64>>, softness: f64) -> Option<Self> {
-        let factor = compliance(&moments, &inverse, softness).and_then(|lower| LowerFactor::new(&lower, None))?;
+    /// `None` if the moments are not independent.
+    pub(in crate::dynamics) fn new(moments: Vec<Moment>, inverse: Vec<Vec<f64>>) -> Option<Self> {
+        let factor = compliance(&moments, &inverse).and_then(|lower| LowerFactor::new(&lower, None))?;
         Some(Self { moments, inverse, factor })
     }
 
@@ -112,10 +112,11 @@ impl Multipliers {
         }
     }
 
-    /// A moment that nearly follows from the others: what is left of its own compliance beside them,
-    /// `1/(S⁻¹)_rr` of `S_rr` for `S = B M⁻¹ Bᵀ`, is less than `least`.
-    pub(in crate::dynamics) fn dependent(&self, least: f64) -> Option<&Moment> {
+    /// A moment of some conditions that nearly follows from the others: what is left of its own compliance
+    /// beside them, `1/(S⁻¹)_rr` of `S_rr` for `S = B M⁻¹ Bᵀ`, is less than `least`.
+    pub(in crate::dynamics) fn dependent(&self, least: f64, of: impl Fn(usize) -> bool) -> Option<&Moment> {
         (0..self.moments.len())
+            .filter(|&row| of(self.moments[row].condition))
             .map(|row| {
                 let mut unit = vec![0.0; self.moments.len()];
                 unit[row] = 1.0;
@@ -172,7 +173,7 @@ pub(in crate::dynamics) fn moments_of(
         let span = space.find_span(point.along).ok_or(point.position)?;
         let multipliers = space.shape_functions(span, point.along).value;
         for (k, multiplier) in multipliers[..=space.degree()].iter().enumerate() {
-            let row = (space.spans()[span].first + k).clamp(rows.start, rows.end - 1) - rows.start;
+            let row = space.spans()[span].first + k - rows.start;
             for (set, along) in directions.iter().enumerate() {
                 let (row, direction) = (set * rows.len() + row, along(point.normal));
                 for component in (0..2).filter(|&d| direction[d] != 0.0) {
@@ -192,8 +193,7 @@ pub(in crate::dynamics) fn moments_of(
     Ok(shares.into_iter().zip(totals).map(moment).collect())
 }
 
-/// Splines of a coordinate along an edge for multipliers, and the rows of these that there are: functions
-/// before and after them act with the nearest.
+/// Splines of a coordinate along an edge for multipliers, and those of them that are not zero there.
 pub(in crate::dynamics) struct Splines<'a> {
     space: &'a SplineSpace,
     rows: Range<usize>,
@@ -206,7 +206,7 @@ impl<'a> Splines<'a> {
     }
 
     /// The functions that a body has along an edge through positions (m), with the direction of the mesh in
-    /// which it lies; `None` if it lies in none of them, or is too short.
+    /// which it lies; `None` if it lies in none of them.
     pub(in crate::dynamics) fn of_mesh(
         patch: &'a Patch,
         positions: impl Iterator<Item = [f64; 2]> + Clone,
@@ -218,12 +218,8 @@ impl<'a> Splines<'a> {
         let straight = |&d: &usize| ends(1 - d)[1] - ends(1 - d)[0] <= STRAIGHT * patch.shortest_span();
         let d = (0..2).filter(|_| patch.geometry.is_none()).find(straight)?;
         let (space, [from, to]) = (&patch.spaces[d], ends(d));
-        let [first, last] = [from, to].map(|end| space.find_span(end).map(|span| &space.spans()[span]));
-        let (first, last) = (first?, last?);
-        let beyond = |covered: f64, span: &Span| usize::from(covered < COVERED * span.length());
-        let start = first.first + beyond(first.right - from, first);
-        let end = last.first + space.degree() + 1 - beyond(to - last.left, last);
-        (start + space.degree() < end).then_some((d, Self { space, rows: start..end }))
+        let [start, last] = [from, to].map(|end| space.find_span(end).map(|span| space.spans()[span].first));
+        Some((d, Self { space, rows: start?..last? + space.degree() + 1 }))
     }
 }
 
@@ -274,7 +270,7 @@ pub(in crate::dynamics) fn multiplier_space(patch: &Patch, parts: &[Vec<SurfaceP
 }
 
 /// The lower triangle of `B M⁻¹ Bᵀ`.
-fn compliance(moments: &[Moment], inverse: &[Vec<f64>], softness: f64) -> Option<SparseColMat<usize, f64>> {
+fn compliance(moments: &[Moment], inverse: &[Vec<f64>]) -> Option<SparseColMat<usize, f64>> {
     let mut touching = BTreeMap::<(usize, usize), Vec<(usize, f64, f64)>>::new();
     for (row, (moment, inverse)) in moments.iter().zip(inverse).enumerate() {
         for (&(at, component, share), inverse) in moment.shares.iter().zip(inverse) {
@@ -290,7 +286,7 @@ fn compliance(moments: &[Moment], inverse: &[Vec<f64>], softness: f64) -> Option
         }
     }
     for row in 0..moments.len() {
-        entries.entry((row, row)).and_modify(|own| *own *= 1.0 + softness);
+        entries.entry((row, row)).and_modify(|own| *own *= 1.0 + SOFTNESS);
     }
     let triplets: Vec<_> = entries.into_iter().map(|((column, row), value)| Triplet::new(row, column, value)).collect();
     SparseColMat::try_new_from_triplets(moments.len(), moments.len(), &triplets).ok()

@@ -48,7 +48,7 @@ impl EdgeConditions {
         constraints: &Constraints,
     ) -> Result<Option<Box<Self>>, Failure> {
         let conditions = body.conditions.clone();
-        let mut moments = Vec::new();
+        let (mut moments, mut by_parts) = (Vec::new(), Vec::new());
         for (number, condition) in conditions.iter().enumerate() {
             let parts = smooth_parts(patch, body, &condition.edge);
             let lost = |place| Failure::LostCondition { body: 0, condition: number, place };
@@ -61,6 +61,7 @@ impl EdgeConditions {
             let alone = !meets_an_earlier_edge(body, &conditions, number);
             let of_mesh = alone.then(|| Splines::of_mesh(patch, positions)).flatten();
             let space = multiplier_space(patch, &parts);
+            by_parts.push(of_mesh.is_none());
             if let Some((d, _)) = of_mesh {
                 points.iter_mut().for_each(|(point, _)| point.along = point.position[d]);
             }
@@ -71,26 +72,30 @@ impl EdgeConditions {
             return Ok(None);
         }
         let prescribed: BTreeMap<_, _> = constraints.iter().map(|(at, c, number)| ((at, c), number)).collect();
-        let (mut inverse, mut held) = (Vec::new(), Vec::new());
-        for (row, moment) in moments.iter().enumerate() {
-            let of = |&(at, component, share): &(usize, usize, f64)| match prescribed.get(&(at, component)) {
-                Some(&number) => {
-                    held.push((row, number, component, share));
-                    0.0
-                }
-                None => 1.0 / mass.row_sums()[at],
+        let (mut yielding, mut inverse, mut held) = (Vec::new(), Vec::new(), Vec::new());
+        for moment in moments {
+            let inverse_mass = |at: usize| 1.0 / mass.row_sums()[at];
+            let of = |&(at, c, _): &(usize, usize, f64)| {
+                if prescribed.contains_key(&(at, c)) { 0.0 } else { inverse_mass(at) }
             };
             let inverses: Vec<f64> = moment.shares.iter().map(of).collect();
-            if !moment.yields(&inverses, |at| 1.0 / mass.row_sums()[at]) {
+            if moment.yields(&inverses, inverse_mass) {
+                let on_side = |&(at, c, share)| Some((yielding.len(), *prescribed.get(&(at, c))?, c, share));
+                held.extend(moment.shares.iter().filter_map(on_side));
+                yielding.push(moment);
+                inverse.push(inverses);
+            } else if by_parts[moment.condition] {
                 return Err(Failure::HeldTwice { body: 0, condition: moment.condition });
-            }
-            inverse.push(inverses);
+            } // else a side holds all that this function moves
         }
-        let last = moments[moments.len() - 1].condition;
+        let acts = |number: &usize| yielding.iter().any(|moment| moment.condition == *number);
+        if let Some(condition) = (0..conditions.len()).find(|number| !acts(number)) {
+            return Err(Failure::HeldTwice { body: 0, condition });
+        }
+        let last = conditions.len() - 1;
         let reactions = vec![Reaction::default(); conditions.len()];
-        let multipliers =
-            Multipliers::new(moments, inverse, 0.0).ok_or(Failure::HeldTwice { body: 0, condition: last })?;
-        if let Some(moment) = multipliers.dependent(INDEPENDENT) {
+        let multipliers = Multipliers::new(yielding, inverse).ok_or(Failure::HeldTwice { body: 0, condition: last })?;
+        if let Some(moment) = multipliers.dependent(INDEPENDENT, |condition| by_parts[condition]) {
             return Err(Failure::HeldTwice { body: 0, condition: moment.condition });
         }
         Ok(Some(Box::new(Self { conditions, multipliers, held, reactions })))
