@@ -61,18 +61,21 @@ impl Awake {
     }
 
     /// Cells whose driving energy is more than half of the threshold.
-    pub(crate) fn near_the_threshold(&self, drive: &[Lane]) -> impl Iterator<Item = usize> {
-        let span = drive.len() / self.computed.len();
-        (0..self.computed.len()).filter(move |&cell| {
-            let part = fault!("refined-after-the-crack", 0.5 => f64::INFINITY);
-            let half = part * self.threshold_of(cell);
-            let drive = || drive[cell * span..(cell + 1) * span].iter().flat_map(|energy| energy.0);
-            self.computed[cell] && drive().any(|energy| energy > half)
-        })
+    pub(crate) fn near_the_threshold(&self, lattice: &Lattice, drive: &[Lane]) -> impl Iterator<Item = usize> {
+        let part = fault!("refined-after-the-crack", 0.5 => f64::INFINITY);
+        (0..self.computed.len()).filter(move |&cell| self.computed[cell] && self.is_driven(lattice, drive, cell, part))
     }
 
-    fn threshold_of(&self, cell: usize) -> f64 {
-        self.threshold[if self.threshold.len() > 1 { cell } else { 0 }]
+    /// Whether the driving energy of a point of a cell is more than a part of the threshold. Points outside of
+    /// the body, without weight, see motions that it does not have.
+    fn is_driven(&self, lattice: &Lattice, drive: &[Lane], cell: usize, part: f64) -> bool {
+        let span = lattice.points_per_span();
+        let enough = part * self.threshold[if self.threshold.len() > 1 { cell } else { 0 }];
+        let is_enough = |drive: Lane| drive.0.iter().any(|&energy| energy > enough);
+        let of_body = |batch: usize| {
+            drive[batch].zip(lattice.weights_of(batch), |energy, weight| if weight > 0.0 { energy } else { 0.0 })
+        };
+        (cell * span..(cell + 1) * span).any(|batch| is_enough(drive[batch]) && is_enough(of_body(batch)))
     }
 
     /// Chooses the cells to compute: tiles where a cell is `driven` or c below 1, and those around them.
@@ -130,14 +133,9 @@ impl Awake {
 
     /// Finds the candidates at the present c; whether there are more than before.
     pub(super) fn wake(&mut self, lattice: &Lattice, drive: &[Lane], phase: &[f64]) -> bool {
-        let span = lattice.points_per_span();
         let cells = || (0..self.computed.len()).filter(|&cell| self.computed[cell]);
         let is_awake = |cell: usize| {
-            let drive = &drive[cell * span..(cell + 1) * span];
-            let threshold = self.threshold_of(cell);
-            self.everything
-                || drive.iter().any(|energy| energy.0.iter().any(|&energy| energy > threshold))
-                || is_damaged(lattice, cell, phase)
+            self.everything || self.is_driven(lattice, drive, cell, 1.0) || is_damaged(lattice, cell, phase)
         };
         let (mut more, mut is_candidate) = (false, self.is_candidate.clone());
         for cell in cells().filter(|&cell| is_awake(cell)) {

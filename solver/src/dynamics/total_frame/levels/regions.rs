@@ -126,7 +126,8 @@ impl Regions {
     /// Refines the tiles where the energy nears the threshold of a model that has one, and a span beside.
     fn mark_driven(&mut self, level: usize, frame: &TotalFrame, spans: [usize; 2]) -> bool {
         let lattice = &frame.lattice;
-        let cells = frame.fracture.iter().filter_map(|f| Some(f.field.awake()?.near_the_threshold(&f.history)));
+        let cells =
+            frame.fracture.iter().filter_map(|f| Some(f.field.awake()?.near_the_threshold(&frame.lattice, &f.history)));
         let tiles = lattice.tiles.len();
         let places = cells.flatten().map(|cell| [cell % tiles * LANES, cell / tiles]);
         let around = |place: usize, size: usize, d: usize| place.saturating_sub(1)..(place + size + 1).min(spans[d]);
