@@ -215,7 +215,7 @@ impl<'a> Splines<'a> {
             let along = positions.clone().map(|position| position[d]);
             along.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], x| [smaller(least, x), larger(most, x)])
         };
-        let straight = |&d: &usize| ends(1 - d)[1] - ends(1 - d)[0] <= STRAIGHT * patch.shortest_span();
+        let straight = |&d: &usize| ends(1 - d)[1] - ends(1 - d)[0] <= fault!("edges-along-the-mesh-buckle", STRAIGHT => -1.0) * patch.shortest_span();
         let d = (0..2).filter(|_| patch.geometry.is_none()).find(straight)?;
         let (space, [from, to]) = (&patch.spaces[d], ends(d));
         let [start, last] = [from, to].map(|end| space.find_span(end).map(|span| space.spans()[span].first));
