@@ -1,8 +1,8 @@
 //! Lagrange multipliers along edges of a body, and the moments of its motion that they prescribe.
 //!
 //! A multiplier is a spline μ along the edge, of the degree of the body's splines less one, over parts at
-//! least [`PART`] spans long, or as below. The moments of the motion with each of them are those of the prescribed one,
-//! at every step and to round-off:
+//! least [`PART`] spans long, or as below. The moments of the motion with each of them are those of the
+//! prescribed one, at every step and to round-off:
 //!
 //! ```text
 //! ∫ μ_r (v·e − w·e) dΓ = 0,   e = x, y or the normal of the edge as it was at t = 0
@@ -35,6 +35,9 @@ use crate::splines::spline::SplineSpace;
 const PART: f64 = 2.0;
 /// Deviation of an edge from a line along the mesh that counts as none, in spans.
 const STRAIGHT: f64 = 0.1;
+/// Least length of such an edge between its first and last points, in spans: along a shorter one the
+/// functions are nearly the same.
+const LEAST: f64 = 0.5;
 /// Parts by which an edge may be too short for their number.
 const ROUND_OFF: f64 = 1e-9;
 /// Distance between ends of edges that counts as none, in lengths of the edge.
@@ -206,7 +209,7 @@ impl<'a> Splines<'a> {
     }
 
     /// The functions that a body has along an edge through positions (m), with the direction of the mesh in
-    /// which it lies; `None` if it lies in none of them.
+    /// which it lies; `None` if it lies in none of them, or is short.
     pub(in crate::dynamics) fn of_mesh(
         patch: &'a Patch,
         positions: impl Iterator<Item = [f64; 2]> + Clone,
@@ -215,26 +218,29 @@ impl<'a> Splines<'a> {
             let along = positions.clone().map(|position| position[d]);
             along.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], x| [smaller(least, x), larger(most, x)])
         };
-        let straight = |&d: &usize| ends(1 - d)[1] - ends(1 - d)[0] <= fault!("edges-along-the-mesh-buckle", STRAIGHT => -1.0) * patch.shortest_span();
+        let straight = |&d: &usize| {
+            ends(1 - d)[1] - ends(1 - d)[0]
+                <= fault!("edges-along-the-mesh-buckle", STRAIGHT => -1.0) * patch.shortest_span()
+        };
         let d = (0..2).filter(|_| patch.geometry.is_none()).find(straight)?;
         let (space, [from, to]) = (&patch.spaces[d], ends(d));
+        let is_long = to - from >= LEAST * patch.shortest_span();
         let [start, last] = [from, to].map(|end| space.find_span(end).map(|span| space.spans()[span].first));
-        Some((d, Self { space, rows: start?..last? + space.degree() + 1 }))
+        is_long.then_some((d, Self { space, rows: start?..last? + space.degree() + 1 }))
     }
 }
 
-/// Whether an edge has an end in common with an earlier one of which the same component is prescribed. With
+/// Whether no other edge of which the same component is prescribed has an end in common with this one. With
 /// all functions of the body along both, their moments would not be independent.
-pub(in crate::dynamics) fn meets_an_earlier_edge(body: &Body, conditions: &[EdgeCondition], number: usize) -> bool {
-    let (own, others) = (&conditions[number], &conditions[..number]);
+pub(in crate::dynamics) fn is_alone(body: &Body, conditions: &[EdgeCondition], number: usize) -> bool {
+    let own = &conditions[number];
     let ends = |condition: &EdgeCondition| edge_ends(body, &condition.edge);
-    let [a, b] = ends(own);
-    let near = NEAR * (b[0] - a[0]).hypot(b[1] - a[1]);
-    let same_component = |other: &&EdgeCondition| (0..2).any(|d| own.components()[d] && other.components()[d]);
-    others.iter().filter(same_component).any(|other| {
-        let apart = |p: [f64; 2], q: [f64; 2]| (p[0] - q[0]).hypot(p[1] - q[1]);
-        ends(other).iter().any(|&end| apart(end, a) <= near || apart(end, b) <= near)
-    })
+    let apart = |[p, q]: [[f64; 2]; 2]| (p[0] - q[0]).hypot(p[1] - q[1]);
+    let near = NEAR * apart(ends(own));
+    let others = conditions.iter().enumerate().filter(|(other, _)| *other != number).map(|(_, other)| other);
+    let same = |other: &&EdgeCondition| (0..2).any(|d| own.components()[d] && other.components()[d]);
+    let touches = |end: [f64; 2]| ends(own).iter().any(|&of_own| apart([end, of_own]) <= near);
+    !others.filter(same).flat_map(ends).any(touches)
 }
 
 /// Splines along an edge for multipliers; linear on an edge that is shorter than a part.

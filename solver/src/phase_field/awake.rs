@@ -66,8 +66,8 @@ impl Awake {
         (0..self.computed.len()).filter(move |&cell| self.computed[cell] && self.is_driven(lattice, drive, cell, part))
     }
 
-    /// Whether the driving energy of a point of a cell is more than a part of the threshold. Points outside of
-    /// the body, without weight, see motions that it does not have.
+    /// Whether the driving energy of a point of a cell is more than a part of the threshold. Points outside
+    /// of the body, without weight, see motions that it does not have.
     fn is_driven(&self, lattice: &Lattice, drive: &[Lane], cell: usize, part: f64) -> bool {
         let span = lattice.points_per_span();
         let enough = part * self.threshold[if self.threshold.len() > 1 { cell } else { 0 }];

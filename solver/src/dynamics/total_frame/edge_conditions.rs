@@ -6,9 +6,7 @@ use std::collections::BTreeMap;
 use super::prescribed::Reactions;
 use crate::checkpoint::{Archive, StateError};
 use crate::dynamics::constraints::Constraints;
-use crate::dynamics::edge_moments::{
-    Moment, Multipliers, Splines, meets_an_earlier_edge, moments_of, multiplier_space,
-};
+use crate::dynamics::edge_moments::{Moment, Multipliers, Splines, is_alone, moments_of, multiplier_space};
 use crate::dynamics::energy::ConditionSample;
 use crate::dynamics::failure::Failure;
 use crate::dynamics::loads::material_at;
@@ -58,7 +56,7 @@ impl EdgeConditions {
             };
             let mut points = parts.iter().flatten().map(of_material).collect::<Result<Vec<_>, _>>()?;
             let positions = parts.iter().flatten().map(|point| point.position);
-            let alone = !meets_an_earlier_edge(body, &conditions, number);
+            let alone = is_alone(body, &conditions, number);
             let of_mesh = alone.then(|| Splines::of_mesh(patch, positions)).flatten();
             let space = multiplier_space(patch, &parts);
             by_parts.push(of_mesh.is_none());

@@ -14,9 +14,7 @@
 
 use super::grid::{ImposedEnergy, NodalFields};
 use crate::checkpoint::{Archive, StateError};
-use crate::dynamics::edge_moments::{
-    Moment, Multipliers, Splines, meets_an_earlier_edge, moments_of, multiplier_space,
-};
+use crate::dynamics::edge_moments::{Moment, Multipliers, Splines, is_alone, moments_of, multiplier_space};
 use crate::dynamics::energy::ConditionSample;
 use crate::dynamics::failure::Failure;
 use crate::dynamics::reaction::Reaction;
@@ -42,7 +40,7 @@ pub(super) struct HeldEdges {
 #[derive(Debug, Clone)]
 struct HeldEdge {
     condition: EdgeCondition,
-    /// Whether it has no end in common with an earlier one.
+    /// Whether no other has an end in common with it.
     alone: bool,
     space: SplineSpace,
     points: Vec<(Follower, SurfacePoint)>,
@@ -65,7 +63,7 @@ impl HeldEdges {
             let points: Vec<_> = on_material.map(|point| (Follower::new(point.position), *point)).collect();
             let reaction = Reaction::at_start(condition.prescribed.start()[1]);
             (!points.is_empty()).then(|| HeldEdge {
-                alone: !meets_an_earlier_edge(body, &conditions, number),
+                alone: is_alone(body, &conditions, number),
                 space: multiplier_space(patch, &parts),
                 condition: condition.clone(),
                 points,
