@@ -6,9 +6,9 @@
 //! ```
 //!
 //! psi is the degraded elastic energy, b gravity, v the velocity less its mean in the domain: a constant
-//! velocity adds nothing to J, but the error of the quadrature beside a slit times itself. q is 1 within half of
-//! the radius about the tip, so that the process zone does not count, and falls smoothly to 0 at the radius. The
-//! faces of the crack carry no load and lie along axis 1.
+//! velocity adds nothing to J, but the error of the quadrature beside a slit times itself. q is 1 within half
+//! of the radius about the tip, so that the process zone does not count, and falls smoothly to 0 at the
+//! radius. The faces of the crack carry no load and lie along axis 1.
 
 use super::TotalFrame;
 use super::domain::Domain;
