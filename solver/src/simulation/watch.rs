@@ -220,7 +220,9 @@ impl Simulation {
         {
             self.warnings.push(format!(
                 "at t = {time:.4e} s the energy ledger is open by {open:.3e} J of {:.3e} J put in by the end: the time step \
-                 is long for contact or for the work of stress; lower analysis.safety (0.2 leaves about a sixteenth of it)",
+                 is long for contact or for the work of stress (lower analysis.safety; 0.2 leaves about a sixteenth of \
+                 it), or, with contact.self_contact, a part that went half a span deep into another was let go (take \
+                 shorter spans)",
                 self.energy_in
             ));
         }
