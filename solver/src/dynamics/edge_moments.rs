@@ -19,13 +19,12 @@
 //! shorter than that of the free body. They do work on what moves only: there is no energy of a penalty.
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 
 use faer::sparse::{SparseColMat, Triplet};
 
 use crate::dynamics::surface::{SurfacePoint, edge_ends};
 use crate::linear_algebra::cholesky::LowerFactor;
-use crate::linear_algebra::control_grid::VectorField;
+use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
 use crate::linear_algebra::extremes::{larger, smaller};
 use crate::scene::{Body, EdgeCondition, Hold};
 use crate::splines::patch::Patch;
@@ -152,6 +151,40 @@ impl Moment {
     }
 }
 
+/// The multipliers of an edge.
+#[derive(Clone, Copy)]
+pub(in crate::dynamics) enum EdgeMultipliers<'a> {
+    /// Splines of the distance along it.
+    OfParts(&'a SplineSpace),
+    /// The functions in a direction of the mesh of control points on a grid.
+    OfMesh(usize, ControlGrid),
+}
+
+impl EdgeMultipliers<'_> {
+    /// Numbers and values of the multipliers at a point with the control points and values of the functions
+    /// there.
+    ///
+    /// # Errors
+    /// The position (m) of a point that is not on the edge.
+    fn at(&self, point: &SurfacePoint, functions: &[(usize, f64)]) -> Result<BTreeMap<usize, f64>, [f64; 2]> {
+        match *self {
+            Self::OfParts(space) => {
+                let span = space.find_span(point.along).ok_or(point.position)?;
+                let values = space.shape_functions(span, point.along).value;
+                Ok((space.spans()[span].first..).zip(values).take(space.degree() + 1).collect())
+            }
+            Self::OfMesh(direction, grid) => {
+                let mut values = BTreeMap::new();
+                for &(at, value) in functions {
+                    let number = if direction == 0 { grid.column_of(at) } else { grid.row_of(at) };
+                    *values.entry(number).or_default() += value;
+                }
+                Ok(values)
+            }
+        }
+    }
+}
+
 /// The moments of a condition, from the points of its edge with the control points and values of the
 /// functions there.
 ///
@@ -160,7 +193,7 @@ impl Moment {
 pub(in crate::dynamics) fn moments_of(
     condition: usize,
     hold: Hold,
-    Splines { space, rows }: &Splines<'_>,
+    multipliers: EdgeMultipliers<'_>,
     points: impl Iterator<Item = (SurfacePoint, Vec<(usize, f64)>)>,
 ) -> Result<Vec<Moment>, [f64; 2]> {
     let directions: &[Direction] = match hold {
@@ -170,20 +203,17 @@ pub(in crate::dynamics) fn moments_of(
         Hold::Components([false, false]) => &[],
         Hold::Normal => &[|normal| normal],
     };
-    let mut shares = vec![BTreeMap::<(usize, usize), f64>::new(); directions.len() * rows.len()];
-    let mut totals = vec![[0.0; 2]; shares.len()];
+    let mut sums = BTreeMap::<(usize, usize), (BTreeMap<(usize, usize), f64>, [f64; 2])>::new();
     for (point, functions) in points {
-        let span = space.find_span(point.along).ok_or(point.position)?;
-        let multipliers = space.shape_functions(span, point.along).value;
-        for (k, multiplier) in multipliers[..=space.degree()].iter().enumerate() {
-            let row = space.spans()[span].first + k - rows.start;
+        for (number, multiplier) in multipliers.at(&point, &functions)? {
             for (set, along) in directions.iter().enumerate() {
-                let (row, direction) = (set * rows.len() + row, along(point.normal));
+                let direction = along(point.normal);
+                let (shares, total) = sums.entry((set, number)).or_default();
                 for component in (0..2).filter(|&d| direction[d] != 0.0) {
                     let weight = multiplier * point.length * direction[component];
-                    totals[row][component] += weight;
+                    total[component] += weight;
                     for &(at, value) in &functions {
-                        *shares[row].entry((at, component)).or_default() += weight * value;
+                        *shares.entry((at, component)).or_default() += weight * value;
                     }
                 }
             }
@@ -193,41 +223,22 @@ pub(in crate::dynamics) fn moments_of(
         let shares = shares.into_iter().map(|((at, component), share)| (at, component, share)).collect();
         Moment { condition, shares, total }
     };
-    Ok(shares.into_iter().zip(totals).map(moment).collect())
+    Ok(sums.into_values().map(moment).collect())
 }
 
-/// Splines of a coordinate along an edge for multipliers, and those of them that are not zero there.
-pub(in crate::dynamics) struct Splines<'a> {
-    space: &'a SplineSpace,
-    rows: Range<usize>,
-}
-
-impl<'a> Splines<'a> {
-    /// All of a space.
-    pub(in crate::dynamics) fn all(space: &'a SplineSpace) -> Self {
-        Self { space, rows: 0..space.dimension() }
-    }
-
-    /// The functions that a body has along an edge through positions (m), with the direction of the mesh in
-    /// which it lies; `None` if it lies in none of them, or is short.
-    pub(in crate::dynamics) fn of_mesh(
-        patch: &'a Patch,
-        positions: impl Iterator<Item = [f64; 2]> + Clone,
-    ) -> Option<(usize, Self)> {
-        let ends = |d: usize| {
-            let along = positions.clone().map(|position| position[d]);
-            along.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], x| [smaller(least, x), larger(most, x)])
-        };
-        let straight = |&d: &usize| {
-            ends(1 - d)[1] - ends(1 - d)[0]
-                <= fault!("edges-along-the-mesh-buckle", STRAIGHT => -1.0) * patch.shortest_span()
-        };
-        let d = (0..2).filter(|_| patch.geometry.is_none()).find(straight)?;
-        let (space, [from, to]) = (&patch.spaces[d], ends(d));
-        let is_long = to - from >= LEAST * patch.shortest_span();
-        let [start, last] = [from, to].map(|end| space.find_span(end).map(|span| space.spans()[span].first));
-        is_long.then_some((d, Self { space, rows: start?..last? + space.degree() + 1 }))
-    }
+/// The direction of the mesh in which an edge through positions (m) lies; `None` if it lies in none of them,
+/// or is short.
+pub(in crate::dynamics) fn along_mesh(
+    patch: &Patch,
+    positions: impl Iterator<Item = [f64; 2]> + Clone,
+) -> Option<usize> {
+    let extent = |d: usize| {
+        let along = || positions.clone().map(|position| position[d]);
+        (along().fold(f64::NEG_INFINITY, larger) - along().fold(f64::INFINITY, smaller)) / patch.shortest_span()
+    };
+    let straight = fault!("edges-along-the-mesh-buckle", STRAIGHT => -1.0);
+    let lies_along = |&d: &usize| extent(1 - d) <= straight && extent(d) >= LEAST;
+    (0..2).filter(|_| patch.geometry.is_none()).find(lies_along)
 }
 
 /// Whether no other edge of which the same component is prescribed has an end in common with this one. With

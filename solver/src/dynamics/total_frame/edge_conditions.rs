@@ -6,7 +6,9 @@ use std::collections::BTreeMap;
 use super::prescribed::Reactions;
 use crate::checkpoint::{Archive, StateError};
 use crate::dynamics::constraints::Constraints;
-use crate::dynamics::edge_moments::{Moment, Multipliers, Splines, is_alone, moments_of, multiplier_space};
+use crate::dynamics::edge_moments::{
+    EdgeMultipliers, Moment, Multipliers, along_mesh, is_alone, moments_of, multiplier_space,
+};
 use crate::dynamics::energy::ConditionSample;
 use crate::dynamics::failure::Failure;
 use crate::dynamics::loads::material_at;
@@ -54,17 +56,15 @@ impl EdgeConditions {
                 let functions = material_at(patch, lattice, point, |at| mass.moves(at));
                 functions.map(|functions| (*point, functions.values)).ok_or_else(|| lost(point.position))
             };
-            let mut points = parts.iter().flatten().map(of_material).collect::<Result<Vec<_>, _>>()?;
+            let points = parts.iter().flatten().map(of_material).collect::<Result<Vec<_>, _>>()?;
             let positions = parts.iter().flatten().map(|point| point.position);
             let alone = is_alone(body, &conditions, number);
-            let of_mesh = alone.then(|| Splines::of_mesh(patch, positions)).flatten();
+            let along = alone.then(|| along_mesh(patch, positions)).flatten();
+            by_parts.push(along.is_none());
             let space = multiplier_space(patch, &parts);
-            by_parts.push(of_mesh.is_none());
-            if let Some((d, _)) = of_mesh {
-                points.iter_mut().for_each(|(point, _)| point.along = point.position[d]);
-            }
-            let splines = of_mesh.map_or(Splines::all(&space), |(_, splines)| splines);
-            moments.extend(moments_of(number, condition.hold, &splines, points.into_iter()).map_err(lost)?);
+            let of_mesh = along.map(|direction| EdgeMultipliers::OfMesh(direction, lattice.grid));
+            let multipliers = of_mesh.unwrap_or(EdgeMultipliers::OfParts(&space));
+            moments.extend(moments_of(number, condition.hold, multipliers, points.into_iter()).map_err(lost)?);
         }
         if moments.is_empty() {
             return Ok(None);

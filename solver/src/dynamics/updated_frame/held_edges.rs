@@ -14,7 +14,9 @@
 
 use super::grid::{ImposedEnergy, NodalFields};
 use crate::checkpoint::{Archive, StateError};
-use crate::dynamics::edge_moments::{Moment, Multipliers, Splines, is_alone, moments_of, multiplier_space};
+use crate::dynamics::edge_moments::{
+    EdgeMultipliers, Moment, Multipliers, along_mesh, is_alone, moments_of, multiplier_space,
+};
 use crate::dynamics::energy::ConditionSample;
 use crate::dynamics::failure::Failure;
 use crate::dynamics::reaction::Reaction;
@@ -225,14 +227,11 @@ impl HeldEdges {
             };
             let lost = |place| Failure::LostCondition { body: 0, condition: number, place };
             let positions = edge.points.iter().map(|(place, _)| place.position);
-            let of_mesh = edge.alone.then(|| Splines::of_mesh(patch, positions)).flatten();
-            let direction = of_mesh.as_ref().map(|(d, _)| *d);
-            let points = edge.points.iter().map(|(place, point)| {
-                let along = direction.map_or(point.along, |d| place.position[d]);
-                (SurfacePoint { along, ..*point }, functions(place))
-            });
-            let splines = of_mesh.map_or(Splines::all(&edge.space), |(_, splines)| splines);
-            moments.extend(moments_of(number, edge.condition.hold, &splines, points).map_err(lost)?);
+            let along = edge.alone.then(|| along_mesh(patch, positions)).flatten();
+            let of_mesh = along.map(|direction| EdgeMultipliers::OfMesh(direction, nodes.grid));
+            let multipliers = of_mesh.unwrap_or(EdgeMultipliers::OfParts(&edge.space));
+            let points = edge.points.iter().map(|(place, point)| (*point, functions(place)));
+            moments.extend(moments_of(number, edge.condition.hold, multipliers, points).map_err(lost)?);
         }
         let inverse = |moment: &Moment| -> Option<Vec<f64>> {
             let free = |(at, component)| if nodes.fixed().contains(&(at, component)) { 0.0 } else { 1.0 };
