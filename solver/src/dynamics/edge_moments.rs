@@ -37,6 +37,9 @@ const STRAIGHT: f64 = 0.1;
 /// Least length of such an edge between its first and last points, in spans: along a shorter one the
 /// functions are nearly the same.
 const LEAST: f64 = 0.5;
+/// Integral of a function along such an edge from which on it has a multiplier, in spans. A function that
+/// only begins to reach the edge nearly follows from the others; with 1e-6 the ledger is open by 1e-11.
+const BARE: f64 = 1e-4;
 /// Parts by which an edge may be too short for their number.
 const ROUND_OFF: f64 = 1e-9;
 /// Distance between ends of edges that counts as none, in lengths of the edge.
@@ -156,8 +159,9 @@ impl Moment {
 pub(in crate::dynamics) enum EdgeMultipliers<'a> {
     /// Splines of the distance along it.
     OfParts(&'a SplineSpace),
-    /// The functions in a direction of the mesh of control points on a grid.
-    OfMesh(usize, ControlGrid),
+    /// The functions in a direction of the mesh of control points on a grid, where their integral along the
+    /// edge is at least so long (m).
+    OfMesh(usize, ControlGrid, f64),
 }
 
 impl EdgeMultipliers<'_> {
@@ -173,7 +177,7 @@ impl EdgeMultipliers<'_> {
                 let values = space.shape_functions(span, point.along).value;
                 Ok((space.spans()[span].first..).zip(values).take(space.degree() + 1).collect())
             }
-            Self::OfMesh(direction, grid) => {
+            Self::OfMesh(direction, grid, _) => {
                 let mut values = BTreeMap::new();
                 for &(at, value) in functions {
                     let number = if direction == 0 { grid.column_of(at) } else { grid.row_of(at) };
@@ -223,22 +227,25 @@ pub(in crate::dynamics) fn moments_of(
         let shares = shares.into_iter().map(|((at, component), share)| (at, component, share)).collect();
         Moment { condition, shares, total }
     };
-    Ok(sums.into_values().map(moment).collect())
+    let least = if let EdgeMultipliers::OfMesh(.., least) = multipliers { least } else { 0.0 };
+    Ok(sums.into_values().filter(|(_, total)| total[0].hypot(total[1]) >= least).map(moment).collect())
 }
 
-/// The direction of the mesh in which an edge through positions (m) lies; `None` if it lies in none of them,
-/// or is short.
+/// The functions of control points on a grid along an edge through positions (m); `None` if it does not lie in
+/// a direction of the mesh, or is short.
 pub(in crate::dynamics) fn along_mesh(
     patch: &Patch,
+    grid: ControlGrid,
     positions: impl Iterator<Item = [f64; 2]> + Clone,
-) -> Option<usize> {
+) -> Option<EdgeMultipliers<'static>> {
     let extent = |d: usize| {
         let along = || positions.clone().map(|position| position[d]);
         (along().fold(f64::NEG_INFINITY, larger) - along().fold(f64::INFINITY, smaller)) / patch.shortest_span()
     };
     let straight = fault!("edges-along-the-mesh-buckle", STRAIGHT => -1.0);
     let lies_along = |&d: &usize| extent(1 - d) <= straight && extent(d) >= LEAST;
-    (0..2).filter(|_| patch.geometry.is_none()).find(lies_along)
+    let direction = (0..2).filter(|_| patch.geometry.is_none()).find(lies_along)?;
+    Some(EdgeMultipliers::OfMesh(direction, grid, BARE * patch.shortest_span()))
 }
 
 /// Whether no other edge of which the same component is prescribed has an end in common with this one. With

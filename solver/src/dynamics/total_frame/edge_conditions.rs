@@ -59,11 +59,10 @@ impl EdgeConditions {
             let points = parts.iter().flatten().map(of_material).collect::<Result<Vec<_>, _>>()?;
             let positions = parts.iter().flatten().map(|point| point.position);
             let alone = is_alone(body, &conditions, number);
-            let along = alone.then(|| along_mesh(patch, positions)).flatten();
+            let along = alone.then(|| along_mesh(patch, lattice.grid, positions)).flatten();
             by_parts.push(along.is_none());
             let space = multiplier_space(patch, &parts);
-            let of_mesh = along.map(|direction| EdgeMultipliers::OfMesh(direction, lattice.grid));
-            let multipliers = of_mesh.unwrap_or(EdgeMultipliers::OfParts(&space));
+            let multipliers = along.unwrap_or(EdgeMultipliers::OfParts(&space));
             moments.extend(moments_of(number, condition.hold, multipliers, points.into_iter()).map_err(lost)?);
         }
         if moments.is_empty() {

@@ -227,9 +227,8 @@ impl HeldEdges {
             };
             let lost = |place| Failure::LostCondition { body: 0, condition: number, place };
             let positions = edge.points.iter().map(|(place, _)| place.position);
-            let along = edge.alone.then(|| along_mesh(patch, positions)).flatten();
-            let of_mesh = along.map(|direction| EdgeMultipliers::OfMesh(direction, nodes.grid));
-            let multipliers = of_mesh.unwrap_or(EdgeMultipliers::OfParts(&edge.space));
+            let along = edge.alone.then(|| along_mesh(patch, nodes.grid, positions)).flatten();
+            let multipliers = along.unwrap_or(EdgeMultipliers::OfParts(&edge.space));
             let points = edge.points.iter().map(|(place, point)| (*point, functions(place)));
             moments.extend(moments_of(number, edge.condition.hold, multipliers, points).map_err(lost)?);
         }
