@@ -35,6 +35,8 @@ pub(crate) mod rigid_outline;
 pub(crate) mod thin_parts;
 mod winding;
 
+use thiserror::Error;
+
 use super::ContactLedger;
 use super::impulse::ContactForce;
 use super::rigid::RigidPose;
@@ -63,7 +65,8 @@ const LEAST: f64 = 0.25;
 const SKIN: f64 = 1e-9;
 
 /// A boundary that is deeper in another body than contact follows.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[error("a boundary is {spans:.3} spans deep in another body, and contact follows {follows:.3} there")]
 pub struct TooDeep {
     /// Place, m.
     pub place: [f64; 2],

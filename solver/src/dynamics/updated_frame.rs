@@ -102,7 +102,7 @@ impl UpdatedFrame {
         let mut frame = Self { patch, fields, bodies, contact, fragments, thickness, recorded };
         frame.part_at_start()?;
         if let Some(contact) = &mut frame.contact {
-            contact.find(&views(&frame.fields)).map_err(Failure::TooFast)?;
+            contact.find(&views(&frame.fields))?;
         }
         Ok(frame)
     }
@@ -117,7 +117,7 @@ impl UpdatedFrame {
         self.fields.iter_mut().for_each(|field| field.expect_motion(dt));
         contact.set_step(dt);
         contact.move_rigid(0.0);
-        contact.find(&views(&self.fields)).map_err(Failure::TooFast)?;
+        contact.find(&views(&self.fields))?;
         Ok(())
     }
 
@@ -131,7 +131,7 @@ impl UpdatedFrame {
         let Self { fields, contact, .. } = self;
         if let Some(contact) = contact {
             contact.set_step(dt);
-            for push in contact.act(&views(fields), kick).map_err(Failure::Unconverged)? {
+            for push in contact.act(&views(fields), kick)? {
                 fields[push.body].add_acceleration(push.at, push.acceleration);
             }
             fields.iter_mut().for_each(|field| field.hold_pushed(dt));
@@ -141,7 +141,7 @@ impl UpdatedFrame {
         let Self { fields, contact, .. } = self;
         if let Some(contact) = contact {
             contact.move_rigid(fields[0].time());
-            contact.find(&views(fields)).map_err(Failure::TooFast)?;
+            contact.find(&views(fields))?;
         }
         Ok(())
     }

@@ -106,7 +106,7 @@ impl TotalBodies {
     fn meet(&mut self, dt: f64) -> Result<(), Failure> {
         let Self { bodies, contact: Some(contact), .. } = self else { return Ok(()) };
         let outlines = bodies.iter().filter_map(TotalFrame::outline).collect();
-        contact.find(outlines, bodies[0].time(), dt).map_err(Failure::TooDeep)?;
+        contact.find(outlines, bodies[0].time(), dt)?;
         for pair in contact.forces() {
             for (side, body) in pair.bodies.into_iter().enumerate() {
                 if let Some(body) = bodies.get_mut(body) {

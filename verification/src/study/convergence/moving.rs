@@ -165,22 +165,7 @@ fn is_in_middle(x: f64, [left, right]: [f64; 2]) -> bool {
 }
 
 fn broken(failure: Failure) -> StudyError {
-    match failure {
-        Failure::PhaseField(failure) => other(format!("the phase-field solve {failure}")),
-        Failure::SingularMass => other("the mass matrix is singular to round-off"),
-        Failure::NoStep => other("the critical time step is not a number"),
-        Failure::Left([x, y]) => other(format!("a point left the mesh at ({x}, {y})")),
-        Failure::NoPoints(_) => other("the body contains no material point"),
-        Failure::HoldsNothing(_)
-        | Failure::Contradiction(_)
-        | Failure::LostCondition { .. }
-        | Failure::HeldTwice { .. } => other("conditions hold nothing, or contradict"),
-        Failure::NoEquilibrium(_) | Failure::Unbalanced(_) => other("there is no static state"),
-        Failure::LostTraction { .. } => other("a part of a traction would not act"),
-        Failure::Unconverged(_) | Failure::TooFast(_) | Failure::TooDeep(_) | Failure::BareBoundary { .. } => {
-            other("contact cannot follow the bodies")
-        }
-    }
+    other(failure.to_string())
 }
 
 #[cfg(test)]
