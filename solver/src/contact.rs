@@ -228,10 +228,4 @@ impl ContactSolver {
     pub fn ledger(&self) -> ContactLedger {
         self.ledger
     }
-
-    /// Heap memory, bytes.
-    pub fn bytes(&self) -> usize {
-        let rigid: usize = self.rigid.iter().map(|body| body.bytes()).sum();
-        self.constraints.len() * size_of::<ContactConstraint>() + rigid
-    }
 }

@@ -310,15 +310,6 @@ impl GapPotential {
         }
         Ok(())
     }
-
-    /// Heap memory, bytes.
-    pub(crate) fn bytes(&self) -> usize {
-        let rigid: usize = self.rigid.iter().map(RigidOutline::bytes).sum();
-        let own: usize = self.own.iter().map(OwnPairs::bytes).sum();
-        let thin: usize = self.thin.iter().map(ThinParts::bytes).sum();
-        let friction = self.friction.as_ref().map_or(0, Friction::bytes);
-        rigid + own + thin + friction + self.forces.len() * size_of::<GapForce>()
-    }
 }
 
 #[cfg(test)]

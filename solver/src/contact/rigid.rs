@@ -117,9 +117,4 @@ impl RigidBody {
     pub(crate) fn surface(&self) -> &Surface {
         &self.surface
     }
-
-    /// Heap memory, bytes.
-    pub(crate) fn bytes(&self) -> usize {
-        self.surface.bytes() + self.reference.len() * size_of::<[f64; 2]>()
-    }
 }

@@ -252,12 +252,6 @@ impl Surface {
     pub(super) fn ends(&self, segment: u32) -> [[f64; 2]; 2] {
         self.segments[segment as usize].map(|vertex| self.vertices[vertex as usize])
     }
-
-    /// Heap memory, bytes.
-    pub fn bytes(&self) -> usize {
-        let per_vertex = 2 * size_of::<[f64; 2]>() + size_of::<[Option<u32>; 2]>();
-        self.vertices.len() * per_vertex + self.segments.len() * size_of::<[u32; 2]>()
-    }
 }
 
 /// Unit normal to the right of the displacement from `a` to `b`.

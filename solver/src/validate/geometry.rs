@@ -127,32 +127,16 @@ fn area(points: &[Position]) -> f64 {
     polygon_edges(points).map(|[a, b]| 0.5 * (a[0] * b[1] - a[1] * b[0])).sum()
 }
 
-/// Points on the boundary of a shape, m.
+/// Points on the boundary of a shape (m), without that of what is cut out of it.
 pub(crate) fn outline(shape: &Shape) -> Vec<[f64; 2]> {
-    let n = OUTLINE_INTERVALS;
-    let circle = |[x, y]: [f64; 2], radius: f64| {
-        (0..n).map(move |i| {
-            let (sin, cos) = (std::f64::consts::TAU * i as f64 / n as f64).sin_cos();
-            [x + radius * cos, y + radius * sin]
-        })
-    };
-    let ring = |corners: &[[f64; 2]]| {
-        let edges: Vec<_> = polygon_edges(corners).collect();
-        let n = (MOST_OUTLINE / edges.len().max(1)).clamp(1, n);
-        let along =
-            |[a, b]: [[f64; 2]; 2]| (0..n).map(move |i| [0, 1].map(|d| a[d] + (b[d] - a[d]) * i as f64 / n as f64));
-        edges.into_iter().flat_map(along).collect::<Vec<_>>()
-    };
     match shape {
-        Shape::Patch => Vec::new(),
-        Shape::Rectangle { min, max } => ring(&[*min, [max[0], min[1]], *max, [min[0], max[1]]]),
-        Shape::Polygon { points } => ring(points),
-        Shape::Disk { center, radius } => circle(*center, *radius).collect(),
-        Shape::Annulus { center, inner_radius, outer_radius } => {
-            circle(*center, *inner_radius).chain(circle(*center, *outer_radius)).collect()
-        }
         Shape::Union(shapes) => shapes.iter().flat_map(outline).collect(),
         Shape::Difference { of, .. } => outline(of),
+        _ => {
+            let edges = shape.edges();
+            let n = (MOST_OUTLINE / edges.len().max(1)).clamp(1, OUTLINE_INTERVALS);
+            edges.iter().flat_map(|edge| (0..n).map(|i| edge.at(i as f64 / n as f64).0)).collect()
+        }
     }
 }
 

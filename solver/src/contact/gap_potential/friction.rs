@@ -148,11 +148,6 @@ impl Friction {
         archive.value(&mut self.histories)?;
         archive.value(&mut self.dissipated)
     }
-
-    /// Heap memory, bytes.
-    pub(crate) fn bytes(&self) -> usize {
-        (self.histories.len() + self.found.len()) * size_of::<History>()
-    }
 }
 
 impl History {

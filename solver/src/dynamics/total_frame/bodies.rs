@@ -287,11 +287,10 @@ impl TotalBodies {
         counts.reduce(PhaseFieldCounts::plus)
     }
 
-    /// Heap memory of mechanics and of the phase fields, bytes.
+    /// Heap memory of mechanics and of the phase fields, without that of boundaries, bytes.
     pub(crate) fn bytes(&self) -> [usize; 2] {
-        let contact = self.contact.as_ref().map_or(0, GapPotential::bytes);
         let of_bodies = self.bodies.iter().map(TotalFrame::bytes);
-        of_bodies.fold([contact, 0], |sum, bytes| [sum[0] + bytes[0], sum[1] + bytes[1]])
+        of_bodies.fold([0; 2], |sum, bytes| [sum[0] + bytes[0], sum[1] + bytes[1]])
     }
 
     /// Stores or takes up what steps change.

@@ -120,7 +120,7 @@ impl EdgeConditions {
         }
         let part = if time == 0.0 { 0.5 } else { 1.0 }; // of a step, since the velocity at hand
         let excess = |moment: &Moment| {
-            let next = moment.translated(self.reactions[moment.condition].next_velocity());
+            let next = moment.translated(self.reactions[moment.condition].velocity[0]);
             let now = fault!("edge-speed-forgotten", moment.of(velocity) => next);
             let prescribed = if dt > 0.0 { (next - now) / (part * dt) } else { 0.0 };
             moment.of(acceleration) - prescribed
@@ -130,7 +130,7 @@ impl EdgeConditions {
         for (moment, multiplier) in self.multipliers.moments.iter().zip(&multipliers) {
             let force =
                 moment.total.map(|total| -fault!("edge-reaction-reversed", multiplier * total => -multiplier * total));
-            (0..2).for_each(|d| self.reactions[moment.condition].add(d, force[d]));
+            (0..2).for_each(|d| self.reactions[moment.condition].force[0][d] += force[d]);
         }
         for &(row, number, component, share) in &self.held {
             sides.add(number, component, multipliers[row] * share);

@@ -17,7 +17,7 @@ use crate::material::hencky::{growth, hencky_strain, symmetric};
 use crate::output::inspection::InvertedPoint;
 use crate::particles::lattice::Lattice;
 use crate::phase_field::fracture::{CrackTip, LatticeFracture, crack_tip, most_broken};
-use crate::scene::{Kinematics, Shape};
+use crate::scene::Kinematics;
 use crate::splines::patch::Patch;
 
 impl TotalFrame {
@@ -172,11 +172,6 @@ impl TotalFrame {
     /// Material points.
     pub fn lattice(&self) -> &Lattice {
         &self.lattice
-    }
-
-    /// Region of the body.
-    pub fn shape(&self) -> &Shape {
-        &self.shape
     }
 
     /// Background patch.

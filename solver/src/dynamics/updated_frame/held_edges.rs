@@ -62,7 +62,7 @@ impl HeldEdges {
             let parts = smooth_parts(patch, body, &condition.edge);
             let on_material = parts.iter().flatten().filter(|point| body.shape.contains(point.inner));
             let points: Vec<_> = on_material.map(|point| (Follower::new(point.position), *point)).collect();
-            let reaction = Reaction::at_start(condition.prescribed.start()[1]);
+            let reaction = Reaction { velocity: [condition.prescribed.start()[1]; 2], ..Reaction::default() };
             (!points.is_empty()).then(|| HeldEdge {
                 space: multiplier_space(patch, &parts),
                 condition,
@@ -80,7 +80,7 @@ impl HeldEdges {
         for edge in &mut self.edges {
             edge.points.retain(|(place, _)| keeps(place.position));
             if !keeps_work {
-                edge.reaction.forget_work();
+                edge.reaction.work = 0.0;
             }
         }
     }
@@ -121,7 +121,7 @@ impl HeldEdges {
     pub(super) fn impose(&mut self, nodes: &mut NodalFields) -> ImposedEnergy {
         self.edges.iter_mut().for_each(|edge| edge.struck = 0.0);
         let Self { edges, multipliers: Some(multipliers), .. } = self else { return ImposedEnergy::default() };
-        let last = |moment: &Moment| moment.translated(edges[moment.condition].reaction.last_velocity());
+        let last = |moment: &Moment| moment.translated(edges[moment.condition].reaction.velocity[1]);
         let impulses = multipliers.of_excess(|moment| moment.of(&nodes.velocity) - last(moment));
         let mut energy = ImposedEnergy::default();
         let mut sums = vec![[0.0; 2]; edges.len()];
@@ -132,7 +132,7 @@ impl HeldEdges {
         }
         multipliers.yield_to(&impulses, &mut nodes.velocity);
         for (edge, sum) in edges.iter_mut().zip(sums) {
-            edge.struck = dot(sum, edge.reaction.last_velocity());
+            edge.struck = dot(sum, edge.reaction.velocity[1]);
             energy.work += edge.struck;
         }
         energy
@@ -145,7 +145,7 @@ impl HeldEdges {
         let Some(multipliers) = &self.multipliers else { return forces };
         let change = |moment: &Moment| {
             let reaction = &self.edges[moment.condition].reaction;
-            let [next, last] = [reaction.next_velocity(), reaction.last_velocity()];
+            let [next, last] = reaction.velocity;
             let begun = fault!("held-edge-without-course", kick > 0.0 => false);
             moment.translated([0, 1].map(|d| if begun { (next[d] - last[d]) / kick } else { 0.0 }))
         };
@@ -161,7 +161,7 @@ impl HeldEdges {
     pub(super) fn accelerate(&mut self, acceleration: &mut VectorField, kick: f64) {
         let forces = self.hold(acceleration, kick);
         for (edge, force) in self.edges.iter_mut().zip(forces) {
-            edge.reaction.set(force);
+            edge.reaction.force[0] = force;
         }
     }
 
@@ -176,7 +176,7 @@ impl HeldEdges {
     /// without that of impacts.
     pub(super) fn work(&mut self, dt: f64) -> f64 {
         let book = |edge: &mut HeldEdge| {
-            edge.reaction.add_work(edge.struck);
+            edge.reaction.work += edge.struck;
             edge.reaction.book(dt)
         };
         fault!("held-edge-works-twice", 1.0 => 2.0) * self.edges.iter_mut().map(book).sum::<f64>()
@@ -187,7 +187,7 @@ impl HeldEdges {
     pub(super) fn samples(&self, forces: &[[f64; 2]]) -> Vec<ConditionSample> {
         let named = |(HeldEdge { condition, reaction, .. }, force): (&HeldEdge, &[f64; 2])| {
             let mut reaction = *reaction;
-            (0..2).for_each(|d| reaction.add(d, force[d]));
+            (0..2).for_each(|d| reaction.force[0][d] += force[d]);
             Some(reaction.sample(condition.name.as_deref()?, condition.components()))
         };
         self.edges.iter().zip(forces).filter_map(named).collect()
@@ -204,11 +204,6 @@ impl HeldEdges {
             edge.points.iter_mut().try_for_each(|(place, _)| archive.value(&mut place.position))?;
         }
         Ok(())
-    }
-
-    /// Heap memory, bytes.
-    pub(super) fn bytes(&self) -> usize {
-        self.edges.iter().map(|edge| edge.points.len() * size_of::<(Follower, SurfacePoint)>()).sum()
     }
 
     /// The multipliers that can move something on the present grid.

@@ -100,11 +100,6 @@ impl UpdatedFrame {
         self.fields.iter().find_map(|field| field.surface()?.opened())
     }
 
-    /// Thickness, m.
-    pub fn thickness(&self) -> f64 {
-        self.thickness
-    }
-
     /// Elastic energy, J.
     pub fn elastic_energy(&self) -> f64 {
         self.fields.iter().map(|field| field.elastic_energy()).sum()
@@ -139,13 +134,10 @@ impl UpdatedFrame {
         self.fields.iter().filter_map(DiscreteField::inverted_point).reduce(InvertedPoint::worse)
     }
 
-    /// Heap memory of mechanics and of the phase fields, bytes.
+    /// Heap memory of mechanics and of the phase fields, without that of boundaries, bytes.
     pub fn bytes(&self) -> [usize; 2] {
-        let contact = self.contact.as_ref().map_or(0, |contact| contact.bytes());
-        self.fields
-            .iter()
-            .map(|field| field.bytes())
-            .fold([contact, 0], |sum, bytes| [sum[0] + bytes[0], sum[1] + bytes[1]])
+        let of_fields = self.fields.iter().map(DiscreteField::bytes);
+        of_fields.fold([0; 2], |sum, bytes| [sum[0] + bytes[0], sum[1] + bytes[1]])
     }
 }
 
@@ -300,19 +292,12 @@ impl DiscreteField {
         self.moduli
     }
 
-    /// Heap memory of mechanics and of the phase field, bytes.
+    /// Heap memory of mechanics and of the phase field, without that of boundaries, bytes.
     pub fn bytes(&self) -> [usize; 2] {
         let points = self.points.len() * size_of::<Point>() + self.cells.bytes();
-        let loads: usize = self.loads.iter().map(|load| load.bytes()).sum();
         let affine = self.affine.as_ref().map_or(0, |affine| affine.bytes());
         let deformation = self.deformation.as_ref().map_or(0, |gradients| gradients.len() * size_of::<Gradient>());
-        let forcing = self.forcing.as_ref().map_or(0, |forcing| forcing.bytes());
-        let surface = self.surface.as_ref().map_or(0, |surface| surface.bytes());
-        let edges = self.edges.as_ref().map_or(0, |edges| edges.bytes());
-        let points = points + edges + affine + deformation + forcing + surface;
-        [
-            points + self.nodes.bytes() + self.velocity_transfer.bytes() + loads,
-            self.fracture.as_ref().map_or(0, |f| f.bytes()),
-        ]
+        let nodes = self.nodes.bytes() + self.velocity_transfer.bytes();
+        [points + affine + deformation + nodes, self.fracture.as_ref().map_or(0, |fracture| fracture.bytes())]
     }
 }

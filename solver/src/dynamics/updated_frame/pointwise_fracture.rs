@@ -144,7 +144,7 @@ impl PointwiseFracture {
 
     /// Heap memory, bytes.
     pub(crate) fn bytes(&self) -> usize {
-        self.points.len() * size_of::<FracturePoint>() + self.field.bytes() + self.fictitious.bytes()
+        self.points.len() * size_of::<FracturePoint>() + self.field.bytes()
     }
 }
 

@@ -104,11 +104,6 @@ impl PointForcing {
     pub(crate) fn powers(&self) -> [f64; 2] {
         self.powers
     }
-
-    /// Heap memory, bytes.
-    pub(crate) fn bytes(&self) -> usize {
-        self.loads.len() * size_of::<VolumeLoad>() + self.motion.len() * size_of::<([f64; 2], Gradient)>()
-    }
 }
 
 /// Power per unit volume on a velocity and its gradient.

@@ -16,15 +16,6 @@ impl Lattice {
         (row < self.patch_rows).then_some(row / self.strip_rows)
     }
 
-    /// The first control point of the patch that a point sees, by column and row: that of its span.
-    pub(crate) fn span_of(&self, batch: usize, lane: usize) -> [usize; 2] {
-        if let Some(cut) = self.cut_batch(batch) {
-            return cut.first;
-        }
-        let (row, tile, _, _) = self.unbatch(batch);
-        [self.tiles[tile].first + lane, self.rows[row].first - self.rows[row].lift]
-    }
-
     /// Control points of the phase field whose functions the points of a cell see, as rows of their indices.
     pub(crate) fn functions_of_cell(&self, cell: usize) -> impl Iterator<Item = Range<usize>> + '_ {
         let (span, tiles) = (self.points_per_span(), self.tiles.len());
