@@ -198,7 +198,7 @@ impl ContactSolver {
                     weights.extend(on_b.weights().iter().map(|&(at, w)| (number(b, at), w)));
                     [0.0; 2]
                 }
-                None => self.rigid[b - bodies.len()].velocity_at(constraint.position),
+                None => self.rigid[b - bodies.len()].pose.velocity_at(constraint.position),
             };
             let impulse = self
                 .last

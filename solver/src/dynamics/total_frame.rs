@@ -55,10 +55,13 @@ use probe::ProbePlace;
 /// One body in the total frame.
 #[derive(Debug, Clone)]
 pub struct TotalFrame {
-    patch: Patch,
+    /// Background patch.
+    pub patch: Patch,
     grid: ControlGrid,
-    lattice: Lattice,
-    moduli: ElasticModuli,
+    /// Material points.
+    pub lattice: Lattice,
+    /// Moduli.
+    pub moduli: ElasticModuli,
     kinematics: Kinematics,
     shape: Shape,
     thickness: f64,
@@ -66,16 +69,20 @@ pub struct TotalFrame {
     loads: Vec<NodalLoad>,
     /// Loads that vary in space, if there are any.
     forced: Option<Box<LatticeForcing>>,
-    constraints: Constraints,
+    /// Sides with prescribed velocity.
+    pub constraints: Constraints,
     /// Conditions on edges that are not sides of the mesh, if there are any.
     edges: Option<Box<EdgeConditions>>,
     /// The boundary, if it may meet others.
     boundary: Option<Box<MaterialBoundary>>,
-    mass: MassMatrix,
+    /// Mass per unit thickness.
+    pub mass: MassMatrix,
     /// Control points in use: all, unless the body has other levels.
     in_use: ActiveColumns,
-    displacement: VectorField,
-    velocity: VectorField,
+    /// Control values of the displacement, m.
+    pub displacement: VectorField,
+    /// Control values of the velocity, m/s.
+    pub velocity: VectorField,
     acceleration: VectorField,
     internal: VectorField,
     strip_forces: StripForces,

@@ -69,11 +69,14 @@ use fragments::Fragments;
 /// The bodies of a scene in the updated frame.
 #[derive(Debug, Clone)]
 pub struct UpdatedFrame {
-    patch: Arc<Patch>,
-    fields: Vec<DiscreteField>,
+    /// Background patch.
+    pub patch: Arc<Patch>,
+    /// The fields of the bodies that deform: of those that are whole, or of fragments.
+    pub fields: Vec<DiscreteField>,
     /// Number of the body that each field is of, or is a fragment of.
     bodies: Vec<usize>,
-    contact: Option<ContactSolver>,
+    /// Contact of the bodies, if the scene declares it.
+    pub contact: Option<ContactSolver>,
     /// If bodies may fall into fragments.
     fragments: Option<Fragments>,
     thickness: f64,
@@ -154,11 +157,6 @@ impl UpdatedFrame {
     /// Critical time step of the undamaged bodies at the present positions, s; infinite if nothing can move.
     pub fn critical_step(&self) -> f64 {
         self.fields.iter().map(|field| field.critical_step()).fold(f64::INFINITY, smaller)
-    }
-
-    /// Number of the body that a field is of, or is a part of.
-    fn body_of(&self, field: usize) -> usize {
-        self.bodies[field]
     }
 
     /// Takes the critical time step (s) again if a point may have moved a quarter of the shortest span since

@@ -263,7 +263,7 @@ impl Rows<'_> {
             let reachable = offsets.iter().take_while(|o| row + o.rows < rows).count();
             for column in matrix.active().row(self.first + row).iter().cloned().flatten() {
                 let at = row * row_length + grid.index(column, 0);
-                let own = self.unit * matrix.diagonal(column, self.first + row);
+                let own = self.unit * matrix.row(self.first + row, 0)[grid.index(column, 0)];
                 let diagonal = if self.scale.is_some() && own > 0.0 { 1.0 } else { own };
                 if block[at] <= LEAST_PIVOT * diagonal && shift < LARGEST_SHIFT && diagonal > 0.0 {
                     return false;

@@ -65,7 +65,7 @@ pub struct Lattice {
     pub tiles: Vec<Tile>,
     /// Rows of spans, those of sheets last.
     pub rows: Vec<Row>,
-    patch_rows: usize,
+    pub(crate) patch_rows: usize,
     /// Rows of spans in a strip.
     strip_rows: usize,
     /// What the geometry of the patch adds; absent over a rectangle.
@@ -263,11 +263,6 @@ impl Lattice {
     /// Number of strips of the patch; those of sheets follow.
     pub(crate) fn patch_strips(&self) -> usize {
         self.patch_rows.div_ceil(self.strip_rows)
-    }
-
-    /// Rows of spans of the patch.
-    pub(crate) fn patch_rows(&self) -> usize {
-        self.patch_rows
     }
 
     /// Rows of spans in a strip.

@@ -21,10 +21,10 @@ pub(crate) struct Awake {
     /// Whether everything takes part in the coming solve.
     pub(super) everything: bool,
     /// Cells of which the driving energy is computed.
-    computed: Vec<bool>,
+    pub computed: Vec<bool>,
     /// Cells whose energy is in the matrix; and all those of their tiles.
     assembled: Vec<bool>,
-    damaged: Vec<bool>,
+    pub damaged: Vec<bool>,
     /// Control points whose value may change, in order, and as marks.
     pub(super) candidates: Vec<usize>,
     is_candidate: Vec<bool>,
@@ -102,16 +102,6 @@ impl Awake {
     /// Smallest driving energy up to which material stays intact, J/m³.
     pub(crate) fn least_threshold(&self) -> f64 {
         self.threshold.iter().copied().fold(f64::INFINITY, smaller)
-    }
-
-    /// Cells of which the driving energy is computed.
-    pub(crate) fn computed(&self) -> &[bool] {
-        &self.computed
-    }
-
-    /// Cells where c may be below 1, by tiles.
-    pub(crate) fn damaged(&self) -> &[bool] {
-        &self.damaged
     }
 
     /// Whether the energy of a cell is in the matrix.

@@ -150,7 +150,7 @@ impl Simulation {
         if !self.finished() {
             return;
         }
-        let mass: f64 = self.updated_frame().map_or(0.0, |frame| frame.fields().iter().map(|field| field.mass()).sum());
+        let mass: f64 = self.updated_frame().map_or(0.0, |frame| frame.fields.iter().map(|field| field.mass()).sum());
         let [px, py] = sample.momentum;
         let mean = if mass > 0.0 { 0.5 * (px * px + py * py) / mass } else { 0.0 };
         let fracture = sample.fracture.as_ref().map_or(0.0, |fracture| fracture.energy);
@@ -325,13 +325,13 @@ impl Simulation {
 
     /// Whether a position is on the mesh of the bodies that move through it.
     fn is_on_mesh(&self, place: [f64; 2]) -> bool {
-        self.updated_frame().is_some_and(|frame| frame.patch().locate(place).is_some())
+        self.updated_frame().is_some_and(|frame| frame.patch.locate(place).is_some())
     }
 
     /// Whether a position is further out of the mesh than that is wide.
     fn is_far_outside(&self, place: [f64; 2]) -> bool {
         let Some(frame) = self.updated_frame() else { return false };
-        let (low, high) = frame.patch().bounding_box();
+        let (low, high) = frame.patch.bounding_box();
         (0..2).any(|d| (low[d] - place[d]).max(place[d] - high[d]) > high[d] - low[d])
     }
 

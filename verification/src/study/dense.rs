@@ -48,7 +48,7 @@ pub fn frequencies_of_consistent_mass(frame: &TotalFrame, density: f64) -> Resul
     let mut operator = frame.stiffness_operator();
     let free = operator.degrees_of_freedom().to_vec();
     let n = free.len();
-    let lattice = frame.lattice();
+    let lattice = &frame.lattice;
     let mut stencil = Stencil::zeros(lattice.grid, lattice.degree);
     add_form(&mut stencil, lattice, Integrand::Mass, &Constant(density));
     let mass = matrix(n, |x, out| {

@@ -61,7 +61,7 @@ impl TotalFrame {
             .map(|model| LatticeFracture::new(&patch, &lattice, body, model, material.fracture.as_ref(), &scene.solver))
             .transpose()?;
         let mass = MassMatrix::new(&lattice, material.density, scene.analysis.mass, held)?;
-        if let Some(number) = constraints.conditions().iter().enumerate().position(|(number, condition)| {
+        if let Some(number) = constraints.conditions.iter().enumerate().position(|(number, condition)| {
             let moves = |(at, _, of): (usize, usize, usize)| of == number && mass.moves(at);
             condition.part.is_some() && !constraints.iter().any(moves)
         }) {

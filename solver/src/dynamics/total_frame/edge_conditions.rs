@@ -27,7 +27,7 @@ const ROUND_OFF: f64 = 1e-9;
 #[derive(Debug, Clone)]
 pub(super) struct EdgeConditions {
     conditions: Vec<EdgeCondition>,
-    multipliers: Multipliers,
+    pub multipliers: Multipliers,
     /// Shares where a side of the mesh prescribes: moment, number of that condition, component, share (m).
     held: Vec<(usize, usize, usize, f64)>,
     reactions: Vec<Reaction>,
@@ -135,11 +135,6 @@ impl EdgeConditions {
         for &(row, number, component, share) in &self.held {
             sides.add(number, component, multipliers[row] * share);
         }
-    }
-
-    /// The multipliers.
-    pub(super) fn multipliers(&self) -> &Multipliers {
-        &self.multipliers
     }
 
     /// Whether they prescribe a part of a motion: its components at control points.

@@ -86,7 +86,7 @@ impl TotalFrame {
         self.internal = self.forces_now();
         self.external_minus_internal();
         if let Some(edges) = &self.edges {
-            edges.multipliers().project_forces(&mut self.acceleration);
+            edges.multipliers.project_forces(&mut self.acceleration);
         }
         let residual = free.iter().map(|&(at, component)| self.acceleration[component][at]).collect();
         let inner = self.internal.iter().flatten().map(|f| f.abs());

@@ -5,20 +5,15 @@ use std::sync::Arc;
 use super::TotalFrame;
 use super::forced::LatticeForcing;
 use super::probe::ProbePlace;
-use crate::dynamics::constraints::Constraints;
 use crate::dynamics::energy::{ConditionSample, FractureSample, ProbeSample, Sample};
 use crate::dynamics::forcing::Forcing;
-use crate::dynamics::mass::MassMatrix;
 use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::lane::Lane;
 use crate::material::degradation::stress_at;
-use crate::material::elasticity::ElasticModuli;
 use crate::material::hencky::{growth, hencky_strain, symmetric};
 use crate::output::inspection::InvertedPoint;
-use crate::particles::lattice::Lattice;
 use crate::phase_field::fracture::{CrackTip, LatticeFracture, crack_tip, most_broken};
 use crate::scene::Kinematics;
-use crate::splines::patch::Patch;
 
 impl TotalFrame {
     /// Position (m) of the fastest control point, and its speed (m/s), infinite if it is no number.
@@ -167,41 +162,6 @@ impl TotalFrame {
     /// Time, s.
     pub fn time(&self) -> f64 {
         self.time
-    }
-
-    /// Material points.
-    pub fn lattice(&self) -> &Lattice {
-        &self.lattice
-    }
-
-    /// Background patch.
-    pub fn patch(&self) -> &Patch {
-        &self.patch
-    }
-
-    /// Moduli.
-    pub fn moduli(&self) -> ElasticModuli {
-        self.moduli
-    }
-
-    /// Control values of the displacement, m.
-    pub fn displacement(&self) -> &VectorField {
-        &self.displacement
-    }
-
-    /// Control values of the velocity, m/s.
-    pub fn velocity(&self) -> &VectorField {
-        &self.velocity
-    }
-
-    /// Mass per unit thickness.
-    pub fn mass(&self) -> &MassMatrix {
-        &self.mass
-    }
-
-    /// Sides with prescribed velocity.
-    pub fn constraints(&self) -> &Constraints {
-        &self.constraints
     }
 
     /// Nodal forces (N/m) of the loads that vary in space, at the present time.

@@ -23,7 +23,7 @@ pub(super) struct Reactions(Vec<Reaction>);
 
 impl Reactions {
     pub(super) fn new(constraints: &Constraints) -> Self {
-        let conditions = constraints.conditions();
+        let conditions = &constraints.conditions;
         let wanted = conditions.iter().any(|c| c.name.is_some() || !c.prescribed.is_at_rest());
         Self(vec![Reaction::default(); if wanted { conditions.len() } else { 0 }])
     }
@@ -52,7 +52,7 @@ impl Reactions {
         if self.0.is_empty() {
             return constraints.remove(acceleration);
         }
-        for (reaction, condition) in self.0.iter_mut().zip(constraints.conditions()) {
+        for (reaction, condition) in self.0.iter_mut().zip(&constraints.conditions) {
             let next = condition.prescribed.mean_velocity(time, dt);
             reaction.drive(fault!("driven-side-lags", next => next.map(|v| 0.5 * v)));
         }
@@ -84,7 +84,7 @@ impl Reactions {
         let sample = |(reaction, condition): (&Reaction, &Boundary)| {
             Some(reaction.sample(condition.name.as_deref()?, condition.fix))
         };
-        self.0.iter().zip(constraints.conditions()).filter_map(sample).collect()
+        self.0.iter().zip(&constraints.conditions).filter_map(sample).collect()
     }
 
     /// Stores or takes up all of them.

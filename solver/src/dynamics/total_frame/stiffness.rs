@@ -83,7 +83,7 @@ impl LatticeStiffness<'_> {
     /// to round-off grows from iteration to iteration (Gould, Hribar and Nocedal 2001).
     pub(super) fn pack_forces(&self, forces: &mut VectorField, out: &mut [f64]) {
         if let Some(edges) = &self.frame.edges {
-            edges.multipliers().project_forces(forces);
+            edges.multipliers.project_forces(forces);
         }
         self.pack(forces, out);
     }
@@ -114,7 +114,7 @@ impl StiffnessOperator for LatticeStiffness<'_> {
         let mut quotient = self.field.clone();
         self.frame.mass.divide(&mut quotient);
         if let Some(edges) = &self.frame.edges {
-            edges.multipliers().project(&mut quotient);
+            edges.multipliers.project(&mut quotient);
         }
         self.pack(&quotient, out);
     }

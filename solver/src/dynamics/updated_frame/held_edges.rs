@@ -37,7 +37,7 @@ pub(super) struct HeldEdges {
     /// On the present grid; `None` if nothing there can yield.
     multipliers: Option<Multipliers>,
     /// Length of the steps, s; zero before the first one.
-    step: f64,
+    pub step: f64,
 }
 
 /// A condition, and the points of its edge.
@@ -101,11 +101,6 @@ impl HeldEdges {
         for (place, _) in self.edges.iter_mut().flat_map(|edge| &mut edge.points) {
             place.follow(patch, nodes.grid, &nodes.velocity, dt);
         }
-    }
-
-    /// Length of the steps, s; zero before the first one.
-    pub(super) fn step(&self) -> f64 {
-        self.step
     }
 
     /// Goes on to a whole step at `time`, to be followed by a step of `dt` seconds.

@@ -54,44 +54,14 @@ impl DiscreteField {
 
     /// What points and surfaces carry.
     fn exchange_points(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self {
-            whole: _,
-            patch: _,
-            origin: _,
-            sides,
-            edges,
-            moduli: _,
-            thickening: _,
-            density: _,
-            thickness: _,
-            gravity: _,
-            points,
-            cells: _,
-            nodes: _,
-            velocity_transfer: _,
-            affine,
-            deformation,
-            loads,
-            forcing,
-            surface,
-            fracture,
-            crack_start,
-            elastic_energy: _, // see exchange_sums
-            stress_work: _,
-            ledger: _,
-            losses: _,
-            time,
-            at_start,
-            last_step,
-            travelled: _,
-        } = self;
+        let Self { sides, edges, points, affine, deformation, loads, forcing, surface, fracture, .. } = self;
         if forcing.is_some() {
             return Err(StateError("loads that only the program knows cannot be stored".to_string()));
         }
-        archive.value(time)?;
-        archive.value(at_start)?;
-        archive.value(last_step)?;
-        archive.value(crack_start)?;
+        archive.value(&mut self.time)?;
+        archive.value(&mut self.at_start)?;
+        archive.value(&mut self.last_step)?;
+        archive.value(&mut self.crack_start)?;
         archive.list(points)?;
         affine.iter_mut().try_for_each(|affine| archive.list(&mut affine.gradients))?;
         deformation.iter_mut().try_for_each(|gradients| archive.list(gradients))?;

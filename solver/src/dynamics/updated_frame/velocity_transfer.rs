@@ -50,7 +50,7 @@ pub(crate) struct VelocityTransfer {
     pub increment: VectorField,
     /// Part of its own velocity that a point keeps.
     pub kept_fraction: f64,
-    transfer: Transfer,
+    pub transfer: Transfer,
     /// Velocity of the grid and [`Self::increment`], side by side.
     fields: Vec<[f64; 4]>,
 }
@@ -59,11 +59,6 @@ impl VelocityTransfer {
     /// Nothing yet.
     pub(crate) fn new(grid: ControlGrid, transfer: Transfer) -> Self {
         Self { increment: [grid.zeros(), grid.zeros()], kept_fraction: 1.0, transfer, fields: Vec::new() }
-    }
-
-    /// The transfer.
-    pub(crate) fn transfer(&self) -> Transfer {
-        self.transfer
     }
 
     /// From the velocities on the grid before and after the step.

@@ -27,7 +27,7 @@ pub(crate) struct PointForcing {
     /// Velocity and its gradient in the motion of the step.
     motion: Vec<([f64; 2], Gradient)>,
     /// Powers of the old and of the new load on that motion, W/m.
-    powers: [f64; 2],
+    pub powers: [f64; 2],
 }
 
 impl PointForcing {
@@ -98,11 +98,6 @@ impl PointForcing {
                 });
             }
         });
-    }
-
-    /// Powers of the old and of the new loads on the motion of the last step, W/m.
-    pub(crate) fn powers(&self) -> [f64; 2] {
-        self.powers
     }
 }
 
