@@ -91,8 +91,9 @@ pub struct ContactSolver {
     /// Length of a step, s.
     step: f64,
     /// Forces of the last step (impulses per second), where to start from.
-    last: BTreeMap<([usize; 2], [usize; 2]), Impulse>,
-    ledger: ContactLedger,
+    pub(crate) last: BTreeMap<([usize; 2], [usize; 2]), Impulse>,
+    /// What contact took and gave so far.
+    pub(crate) ledger: ContactLedger,
 }
 
 impl ContactSolver {
@@ -219,15 +220,5 @@ impl ContactSolver {
             None => None,
         };
         Some(ContactConstraint { gap: encounter.gap(), bodies: pair, square, position, normal, on_a, on_b })
-    }
-
-    /// Forgets the impulses to start from: the bodies are numbered anew.
-    pub(crate) fn forget_impulses(&mut self) {
-        self.last.clear();
-    }
-
-    /// What contact took and gave so far.
-    pub fn ledger(&self) -> ContactLedger {
-        self.ledger
     }
 }

@@ -370,7 +370,7 @@ impl PhaseField {
         self.matrix.bytes()
             + 8 * vectors
             + self.method.bytes()
-            + self.lag.as_ref().map_or(0, |lag| lag.bytes())
+            + self.lag.as_ref().map_or(0, |lag| 16 * lag.solved.len())
             + self.bounds.as_ref().map_or(0, |bounds| bounds.bytes())
     }
 }

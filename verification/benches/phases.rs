@@ -180,7 +180,7 @@ fn contact(criterion: &mut Criterion, cells: usize) {
     };
     let (mut apart, mut meeting) = (begun(None), begun(Some(Contact { friction: 0.3, ..Contact::default() })));
     let frame = meeting.updated_frame().expect("the frame of contact");
-    let mut found = frame.contact.expect("it is declared").clone();
+    let mut found = frame.contact.clone().expect("it is declared");
     let forces = frame.contact_forces(meeting.plan().step);
     assert!(!found.constraints.is_empty() && !forces.is_empty(), "the bodies meet");
     let (name, points) = (format!("p2_2x2_{cells}_spans"), meeting.extent().particles);

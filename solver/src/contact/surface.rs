@@ -136,9 +136,7 @@ impl Surface {
         archive.value(opened)?;
         let ends = segments.iter().flatten().all(|&vertex| (vertex as usize) < vertices.len());
         if !ends || displacements.len() != vertices.len() {
-            return Err(StateError(
-                "the state belongs to another scene: the boundary of a body is not valid".to_string(),
-            ));
+            return Err(StateError::of_another_scene("the boundary of a body is not valid"));
         }
         self.find_neighbours();
         Ok(())

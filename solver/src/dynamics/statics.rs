@@ -38,7 +38,7 @@ impl<'a> StaticSolver<'a> {
         let reach = [2 * p + 1, 2 * q + 1];
         let mut triplets = Vec::new();
         let mut image = [grid.zeros(), grid.zeros()];
-        let mut strips = frame.strip_forces();
+        let mut strips = frame.strip_forces.clone();
         for colour in 0..2 * reach[0] * reach[1] {
             let (component, i, j) = (colour % 2, colour / 2 % reach[0], colour / 2 / reach[0]);
             let mut probe = [grid.zeros(), grid.zeros()];
@@ -78,7 +78,7 @@ impl<'a> StaticSolver<'a> {
             displacement[component][at] = 0.0;
         }
         let mut image = [grid.zeros(), grid.zeros()];
-        shifted_forces(self.frame, self.shift, &displacement, &mut self.frame.strip_forces(), &mut image);
+        shifted_forces(self.frame, self.shift, &displacement, &mut self.frame.strip_forces.clone(), &mut image);
         let right = |&(at, component): &(usize, usize)| forces[component][at] - image[component][at];
         let mut solution = Mat::from_fn(self.free.len(), 1, |n, _| right(&self.free[n]));
         self.factor.solve_in_place(solution.as_mut());

@@ -64,7 +64,6 @@ use crate::linear_algebra::extremes::smaller;
 use crate::scene::Scene;
 use crate::splines::patch::Patch;
 use field::DiscreteField;
-use fragments::Fragments;
 
 /// The bodies of a scene in the updated frame.
 #[derive(Debug, Clone)]
@@ -77,8 +76,8 @@ pub struct UpdatedFrame {
     bodies: Vec<usize>,
     /// Contact of the bodies, if the scene declares it.
     pub contact: Option<ContactSolver>,
-    /// If bodies may fall into fragments.
-    fragments: Option<Fragments>,
+    /// Steps since bodies were checked for fragments, if they may fall into some.
+    fragments: Option<usize>,
     thickness: f64,
     /// Names in columns of the bodies that are recorded one by one, rigid ones last.
     recorded: Option<Vec<String>>,
@@ -100,7 +99,7 @@ impl UpdatedFrame {
         let contact = ContactSolver::new(scene, &patch);
         let recorded = scene.output.bodies.then(|| body_sample::names(scene));
         let parts = scene.contact.as_ref().is_some_and(|contact| contact.fragments);
-        let fragments = parts.then(Fragments::default);
+        let fragments = parts.then_some(0);
         let thickness = scene.analysis.thickness;
         let mut frame = Self { patch, fields, bodies, contact, fragments, thickness, recorded };
         frame.part_at_start()?;

@@ -56,7 +56,8 @@ pub struct IncompleteCholesky {
     shift: f64,
     /// S, one over the root of the diagonal of the matrix now; none for a matrix that is factored as it is.
     scale: Option<Vec<f32>>,
-    unit: f64,
+    /// Power of two by which the matrix is multiplied before it is factored.
+    pub unit: f64,
 }
 
 impl IncompleteCholesky {
@@ -111,11 +112,6 @@ impl IncompleteCholesky {
                 }
             }
         }
-    }
-
-    /// What the matrix is multiplied by, a power of two.
-    pub fn unit(&self) -> f64 {
-        self.unit
     }
 
     /// `out = (unit M)⁻¹ r` on the `active` control points, for an `out` that is zero elsewhere; returns

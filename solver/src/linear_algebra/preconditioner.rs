@@ -71,7 +71,7 @@ impl Preconditioner {
     /// What the matrix is multiplied by, a power of two: see [`IncompleteCholesky::unit`].
     pub fn unit(&self) -> f64 {
         match &self.factor {
-            PreconditionerKind::Incomplete(factor) => factor.unit(),
+            PreconditionerKind::Incomplete(factor) => factor.unit,
             PreconditionerKind::Complete(_, factor) => factor.as_ref().map_or(1.0, |(_, unit)| *unit),
         }
     }

@@ -6,8 +6,7 @@
 //! and no torque is lost.
 
 use super::points::{Cells, OutsidePatch};
-use crate::linear_algebra::control_grid::ControlGrid;
-use crate::linear_algebra::control_grid::VectorField;
+use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
 use crate::linear_algebra::extremes::larger;
 use crate::material::hencky::Gradient;
 use crate::splines::nearest_span::nearest_span;

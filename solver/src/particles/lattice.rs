@@ -38,8 +38,7 @@ use crate::scene::edges::BoundaryEdge;
 use crate::scene::{Body, Crack, Layout, Shape};
 use crate::splines::patch::Patch;
 use crate::splines::quadrature::Rule;
-use crate::splines::spline::MAX_FUNCTIONS;
-use crate::splines::spline::SplineSpace;
+use crate::splines::spline::{MAX_FUNCTIONS, SplineSpace};
 use cut::Rules;
 use tables::Along;
 pub(crate) use tables::{Row, Tile};
@@ -333,9 +332,8 @@ impl Lattice {
     /// Heap memory of what is kept per point, bytes.
     pub fn bytes(&self) -> usize {
         let mapping = self.mapping.as_ref().map_or(0, |mapping| mapping.bytes());
-        let sheets = self.sheets.as_ref().map_or(0, |sheets| sheets.bytes());
         let cut = size_of::<CutBatch>() * self.cut.len();
-        cut + mapping + sheets + self.factor.as_ref().map_or(0, |factor| size_of::<Lane>() * factor.len())
+        cut + mapping + self.factor.as_ref().map_or(0, |factor| size_of::<Lane>() * factor.len())
     }
 
     /// Number of material points.

@@ -165,11 +165,6 @@ impl Awake {
             }
         }
     }
-
-    /// Heap memory, bytes.
-    pub(super) fn bytes(&self) -> usize {
-        8 * (self.candidates.len() + self.threshold.len()) + 3 * self.computed.len() + 2 * self.is_candidate.len()
-    }
 }
 
 /// Whether c is below 1 at a function of a cell.

@@ -2,7 +2,7 @@
 
 use crate::linear_algebra::extremes::{larger, smaller};
 use crate::scene::Shape;
-use crate::scene::edges::{beside, bounding_parts};
+use crate::scene::edges::{bounding_parts, steps_along};
 use crate::scene::shape::{Segment, polygon_edges};
 use crate::splines::nurbs::NurbsPatch;
 
@@ -85,18 +85,10 @@ pub(crate) fn narrow_gap(shape: &Shape, reach: f64) -> Option<(Position, f64)> {
     let most = MOST_GAP_LOOKS / complexity(shape).max(1);
     let length: f64 = parts.iter().map(|(edge, [from, to])| (to - from) * edge.length()).sum();
     let step = larger(0.25 * reach, length / most as f64);
-    parts.iter().find_map(|(edge, [from, to])| {
-        let count = ((to - from) * edge.length() / step).ceil().max(1.0) as usize;
-        (0..count).find_map(|i| {
-            let s = from + (to - from) * (i as f64 + 0.5) / count as f64;
-            let (place, tangent) = edge.at(s);
-            let [left, _] = beside(edge, s);
-            let side = if shape.contains(left) { 1.0 } else { -1.0 };
-            let outwards = side / tangent[0].hypot(tangent[1]);
-            let at = |d: f64| [place[0] + d * outwards * tangent[1], place[1] - d * outwards * tangent[0]];
-            let found = (1..=GAP_LOOKS).map(|k| reach * k as f64 / GAP_LOOKS as f64).find(|d| shape.contains(at(*d)));
-            found.map(|d| (place, d))
-        })
+    steps_along(&parts, step).find_map(|[place, inward]| {
+        let at = |depth: f64| [0, 1].map(|d| place[d] - depth * inward[d]);
+        let found = (1..=GAP_LOOKS).map(|k| reach * k as f64 / GAP_LOOKS as f64).find(|d| shape.contains(at(*d)));
+        found.map(|depth| (place, depth))
     })
 }
 

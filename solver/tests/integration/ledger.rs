@@ -71,7 +71,7 @@ fn terms_equal_their_definitions() {
     let [ux, uy] = &frame.displacement;
     let (mut kinetic, mut momentum, mut work) = (0.0, [0.0; 2], 0.0);
     for at in frame.patch.control_grid().indices() {
-        let m = frame.mass.row_sums()[at] * scene.analysis.thickness;
+        let m = frame.mass.row_sums[at] * scene.analysis.thickness;
         kinetic += 0.5 * m * (vx[at] * vx[at] + vy[at] * vy[at]);
         momentum = [momentum[0] + m * vx[at], momentum[1] + m * vy[at]];
         work += m * (ux[at] * scene.analysis.gravity[0] + uy[at] * scene.analysis.gravity[1]);

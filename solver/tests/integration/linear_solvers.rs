@@ -93,7 +93,7 @@ fn preconditioned(factor: &IncompleteCholesky, matrix: &Stencil, r: &[f64]) -> (
     let single: Vec<f32> = r.iter().map(|r| *r as f32).collect();
     let mut out = vec![0.0; r.len()];
     let product = factor.apply(matrix.active(), &single, &mut out);
-    (out.iter().map(|z| factor.unit() * f64::from(*z)).collect(), factor.unit() * product)
+    (out.iter().map(|z| factor.unit * f64::from(*z)).collect(), factor.unit * product)
 }
 
 /// Banded matrices on one row of control points, where nothing falls outside the stencil, and on rows that

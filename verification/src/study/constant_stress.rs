@@ -40,7 +40,7 @@ struct PatchTest<'a> {
 impl<'a> PatchTest<'a> {
     fn new(frame: &'a TotalFrame) -> Result<Self, StudyError> {
         let mut operator = frame.stiffness_operator();
-        let degrees_of_freedom = operator.degrees_of_freedom().to_vec();
+        let degrees_of_freedom = operator.free.clone();
         let n = degrees_of_freedom.len();
         let mut matrix = dense::matrix(n, |x, out| operator.stiffness(x, out))?;
         let grid = frame.lattice.grid;

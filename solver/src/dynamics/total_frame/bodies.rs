@@ -289,9 +289,7 @@ impl TotalBodies {
             contact.exchange(archive)?;
             if archive.is_reader() {
                 let outlines = self.bodies.iter().filter_map(TotalFrame::outline).collect();
-                contact
-                    .find(outlines, self.bodies[0].time(), 0.0)
-                    .map_err(|_| StateError("the state belongs to another scene: its bodies overlap".to_string()))?;
+                contact.find(outlines, self.bodies[0].time(), 0.0).map_err(StateError::of_another_scene)?;
             }
         }
         Ok(())
@@ -322,7 +320,7 @@ fn of_body(scene: &Scene, body: &Body, is_first: bool) -> Result<TotalFrame, Fai
 
 /// What is recorded of a body, by its control points.
 fn sample_body(body: &TotalFrame, sample: &Sample, name: &str) -> BodySample {
-    let masses = body.mass.row_sums();
+    let masses = &body.mass.row_sums;
     let sum = |value: &dyn Fn(usize) -> f64| -> f64 {
         masses.iter().enumerate().filter(|(_, mass)| **mass > 0.0).map(|(at, mass)| mass * value(at)).sum()
     };

@@ -69,10 +69,10 @@ impl EdgeConditions {
                     held.push((row, number, component, share));
                     0.0
                 }
-                None => 1.0 / mass.row_sums()[at],
+                None => 1.0 / mass.row_sums[at],
             };
             let inverses: Vec<f64> = moment.shares.iter().map(of).collect();
-            if !moment.yields(&inverses, |at| 1.0 / mass.row_sums()[at]) {
+            if !moment.yields(&inverses, |at| 1.0 / mass.row_sums[at]) {
                 return Err(Failure::HeldTwice { body: 0, condition: moment.condition });
             }
             inverse.push(inverses);

@@ -117,7 +117,7 @@ impl Levels {
             interfaces: Vec::new(),
             functions: Vec::new(),
             own: frames.iter().map(|frame| ActiveColumns::all(frame.lattice.patch_grid)).collect(),
-            masses: frames.iter().map(|frame| frame.mass.row_sums().to_vec()).collect(),
+            masses: frames.iter().map(|frame| frame.mass.row_sums.clone()).collect(),
             loads: frames.iter().map(dense).collect(),
             constraints: frames.iter().map(|frame| frame.constraints.clone()).collect(),
             phase_loads: frames.iter().map(phase_load).collect(),

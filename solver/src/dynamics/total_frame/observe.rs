@@ -109,12 +109,10 @@ impl TotalFrame {
     /// The point that is turned inside out furthest, if one is; small strains know none.
     pub(crate) fn inverted_point(&self) -> Option<InvertedPoint> {
         let (mut worst, mut point) = (None, 0);
-        self.lattice.for_each_point(|batch, lane, position, _| {
-            let functions = self.lattice.functions_at(&self.patch, batch, lane);
-            let [x, y] = self.displacement.each_ref().map(|u| functions.interpolate(u));
-            let (_, determinant) = self.strain([x.gradient, y.gradient]);
+        self.for_each_gradient(None, |batch, lane, gradient| {
+            let (_, determinant) = self.strain(gradient);
             if determinant <= 0.0 {
-                let inverted = InvertedPoint { point, position, determinant };
+                let inverted = InvertedPoint { point, position: self.lattice.position(batch, lane), determinant };
                 worst = Some(worst.map_or(inverted, |worst: InvertedPoint| worst.worse(inverted)));
             }
             point += 1;
@@ -141,7 +139,7 @@ impl TotalFrame {
 
     /// Mass, kg, and momentum, kg m/s, so many seconds ago with the present accelerations.
     pub(super) fn mass_and_momentum(&self, ago: f64) -> (f64, [f64; 2]) {
-        let masses = self.mass.row_sums();
+        let masses = &self.mass.row_sums;
         let momentum = |d: usize| {
             let moving = masses.iter().zip(&self.velocity[d]).zip(&self.acceleration[d]);
             self.thickness * moving.map(|((m, v), a)| m * (v - ago * a)).sum::<f64>()

@@ -56,7 +56,7 @@ impl TotalFrame {
     /// Internal forces (N/m), with the phase field at the points as it is now.
     pub(super) fn forces_now(&self) -> VectorField {
         let Self { lattice, moduli, kinematics, displacement, fracture, .. } = self;
-        let (mut out, mut strips) = ([self.grid.zeros(), self.grid.zeros()], self.strip_forces());
+        let (mut out, mut strips) = ([self.grid.zeros(), self.grid.zeros()], self.strip_forces.clone());
         if let Some(fracture) = fracture {
             let mut kernels: Vec<_> = self.held_phase(fracture).collect();
             let fields = Fields { displacement: [&displacement[0], &displacement[1]], phase: &[] };
@@ -92,7 +92,7 @@ impl<'a> Tangent<'a> {
             frame,
             undeformed: frame.stiffness_operator(),
             gradients: gradients(&frame.lattice, &frame.displacement),
-            strips: frame.strip_forces(),
+            strips: frame.strip_forces.clone(),
             forces: [frame.grid.zeros(), frame.grid.zeros()],
         }
     }

@@ -155,7 +155,7 @@ impl DiscreteField {
             grid: *grid,
             inverse_mass,
             density: *density,
-            fixed: nodes.fixed(),
+            fixed: &nodes.fixed,
             velocity,
             acceleration,
         }

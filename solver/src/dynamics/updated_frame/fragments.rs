@@ -18,24 +18,9 @@ use crate::particles::points::Point;
 use crate::phase_field::PhaseFieldCounts;
 
 /// Steps between checks of the bodies: a crack grows by a few spans in them.
-const CHECK_INTERVAL: usize = 16;
+pub(super) const CHECK_INTERVAL: usize = 16;
 /// Area of the smallest fragment, in squares of a span: fewer points have no field of their own.
 const LEAST_SPANS: f64 = 9.0;
-
-/// When the bodies are checked for fragments.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Fragments {
-    /// Steps since the bodies were checked.
-    pub(super) steps: usize,
-}
-
-impl Fragments {
-    /// Whether a check is due, one step later.
-    pub(super) fn is_due(&mut self) -> bool {
-        self.steps = (self.steps + 1) % CHECK_INTERVAL;
-        self.steps == 0
-    }
-}
 
 impl DiscreteField {
     /// Its fragments, if it is cracked through; the first takes over its ledger and what its solver counted.

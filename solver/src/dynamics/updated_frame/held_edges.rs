@@ -218,7 +218,7 @@ impl HeldEdges {
             moments.extend(moments_of(number, edge.condition.hold, &edge.space, points).map_err(lost)?);
         }
         let inverse = |moment: &Moment| -> Option<Vec<f64>> {
-            let free = |(at, component)| if nodes.fixed().contains(&(at, component)) { 0.0 } else { 1.0 };
+            let free = |(at, component)| if nodes.fixed.contains(&(at, component)) { 0.0 } else { 1.0 };
             let of = |&(at, component, _): &(usize, usize, f64)| free((at, component)) * nodes.inverse_mass[at];
             let inverse: Vec<f64> = moment.shares.iter().map(of).collect();
             moment.yields(&inverse, |at| nodes.inverse_mass[at]).then_some(inverse)

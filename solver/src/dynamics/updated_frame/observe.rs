@@ -83,7 +83,7 @@ impl UpdatedFrame {
 
     /// External work so far, J.
     pub fn external_work(&self) -> f64 {
-        let rigid = self.contact.as_ref().map_or(0.0, |contact| contact.ledger().work) * self.thickness;
+        let rigid = self.contact.as_ref().map_or(0.0, |contact| contact.ledger.work) * self.thickness;
         self.fields.iter().map(|field| field.external_work()).sum::<f64>() + rigid
     }
 
@@ -235,9 +235,9 @@ impl DiscreteField {
     /// Heap memory of mechanics and of the phase field, without that of boundaries, bytes.
     pub fn bytes(&self) -> [usize; 2] {
         let points = self.points.len() * size_of::<Point>() + self.cells.bytes();
-        let affine = self.affine.as_ref().map_or(0, |affine| affine.bytes());
-        let deformation = self.deformation.as_ref().map_or(0, |gradients| gradients.len() * size_of::<Gradient>());
-        let nodes = self.nodes.bytes() + self.velocity_transfer.bytes();
-        [points + affine + deformation + nodes, self.fracture.as_ref().map_or(0, |fracture| fracture.bytes())]
+        let gradients = self.affine.iter().map(|affine| &affine.gradients).chain(&self.deformation);
+        let gradients: usize = gradients.map(|gradients| gradients.len() * size_of::<Gradient>()).sum();
+        let nodes = 8 * 21 * self.nodes.grid.len(); // fields of NodalFields and VelocityTransfer
+        [points + gradients + nodes, self.fracture.as_ref().map_or(0, |fracture| fracture.bytes())]
     }
 }

@@ -34,8 +34,7 @@
 use super::grid::NodalFields;
 use super::smoothing::Smoothing;
 use super::windows::side_by_side;
-use crate::linear_algebra::control_grid::ControlGrid;
-use crate::linear_algebra::control_grid::VectorField;
+use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
 use crate::scene::Transfer;
 
 /// Fraction of `1/ω_max` up to which a step is stable (see the module).
@@ -94,11 +93,6 @@ impl VelocityTransfer {
         let ([ux, uy], [tx, ty]) = (motion, &self.increment);
         side_by_side([ux, uy, tx, ty], &mut self.fields);
         &self.fields
-    }
-
-    /// Heap memory, bytes.
-    pub(crate) fn bytes(&self) -> usize {
-        8 * (2 + 4) * self.increment[0].len()
     }
 }
 

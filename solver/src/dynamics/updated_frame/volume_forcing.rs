@@ -11,8 +11,7 @@ use rayon::prelude::*;
 
 use super::windows::{cut, scatter};
 use crate::dynamics::forcing::{Forcing, VolumeLoad};
-use crate::linear_algebra::control_grid::ControlGrid;
-use crate::linear_algebra::control_grid::VectorField;
+use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
 use crate::material::hencky::{Gradient, gradient_at_end};
 use crate::particles::points::{Cell, Cells, Point};
 use crate::splines::patch::Patch;
