@@ -18,6 +18,13 @@ use thiserror::Error;
 #[error("{0}")]
 pub struct StateError(pub String);
 
+impl StateError {
+    /// A state that is not one of this scene, and how that is seen.
+    pub(crate) fn of_another_scene(what: impl std::fmt::Display) -> Self {
+        Self(format!("the state belongs to another scene: {what}"))
+    }
+}
+
 /// Bytes of a state, on their way out or in.
 #[derive(Debug)]
 pub(crate) struct Archive<'a>(Way<'a>);
@@ -67,7 +74,7 @@ impl<'a> Archive<'a> {
         if values.len() == expected {
             return Ok(());
         }
-        Err(StateError(format!("the state belongs to another scene: {} values instead of {expected}", values.len())))
+        Err(StateError::of_another_scene(format!("{} values instead of {expected}", values.len())))
     }
 
     /// What was stored.
@@ -78,9 +85,7 @@ impl<'a> Archive<'a> {
         match self.0 {
             Way::Out(bytes) => Ok(bytes),
             Way::In([]) => Ok(Vec::new()),
-            Way::In(rest) => {
-                Err(StateError(format!("the state belongs to another scene: {} bytes remain", rest.len())))
-            }
+            Way::In(rest) => Err(StateError::of_another_scene(format!("{} bytes remain", rest.len()))),
         }
     }
 }

@@ -29,7 +29,6 @@ mod area;
 pub mod boundary_functions;
 mod constraint;
 pub(crate) mod crack_faces;
-mod displacements;
 mod encounter;
 mod follow;
 pub(crate) mod gap_potential;
@@ -45,7 +44,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::linear_algebra::extremes::larger;
+use crate::linear_algebra::extremes::{around, larger};
 use crate::linear_algebra::vectors::{dot, unit};
 use crate::scene::Scene;
 use crate::splines::patch::Patch;
@@ -87,12 +86,14 @@ pub struct ContactSolver {
     /// Shortest span of the patch, m.
     reach: f64,
     rigid: Vec<RigidBody>,
-    constraints: Vec<ContactConstraint>,
+    /// Where bodies are near each other.
+    pub constraints: Vec<ContactConstraint>,
     /// Length of a step, s.
     step: f64,
     /// Forces of the last step (impulses per second), where to start from.
-    last: BTreeMap<([usize; 2], [usize; 2]), Impulse>,
-    ledger: ContactLedger,
+    pub(crate) last: BTreeMap<([usize; 2], [usize; 2]), Impulse>,
+    /// What contact took and gave so far.
+    pub(crate) ledger: ContactLedger,
 }
 
 impl ContactSolver {
@@ -126,13 +127,19 @@ impl ContactSolver {
     /// If bodies are about to meet that approach each other too far in a step.
     pub fn find(&mut self, bodies: &[BodyView]) -> Result<(), TooFast> {
         let surfaces: Vec<&Surface> =
-            bodies.iter().filter_map(|body| body.surface).chain(self.rigid.iter().map(|r| r.surface())).collect();
+            bodies.iter().filter_map(|body| body.surface).chain(self.rigid.iter().map(|r| &r.surface)).collect();
         let boxes: Vec<_> = surfaces.iter().map(|surface| surface.bounding_box()).collect();
-        let displacements: Vec<_> = surfaces.iter().map(|surface| surface.displacements()).collect();
+        let displacements: Vec<_> =
+            surfaces.iter().map(|surface| around(surface.displacements.iter().map(|way| [*way; 2]))).collect();
         let mut encounters = Vec::new();
         for b in 1..surfaces.len() {
             for a in 0..b.min(bodies.len()) {
-                let reach = self.reach + AHEAD * displacements[a].past(&displacements[b]);
+                // Vertices pass each other by so much at most.
+                let past = |d: usize| {
+                    let ([low, high], [other_low, other_high]) = (displacements[a], displacements[b]);
+                    (high[d] - other_low[d]).max(other_high[d] - low[d]).max(0.0)
+                };
+                let reach = self.reach + AHEAD * past(0).hypot(past(1));
                 let common = [
                     [0, 1].map(|d| boxes[a][0][d].max(boxes[b][0][d]) - reach),
                     [0, 1].map(|d| boxes[a][1][d].min(boxes[b][1][d]) + reach),
@@ -195,7 +202,8 @@ impl ContactSolver {
                 let middle = [0, 1].map(|d| position[d] + 0.5 * sign * nearest.distance * normal[d]);
                 let square = self.squares.of(middle);
                 let sight = Sight { position: middle, gap: nearest.distance, normal };
-                squares.entry(square).or_insert_with(|| Encounter::new(bodies, square, self.reach)).see(sight);
+                let encounter = || Encounter { bodies, square, seen: Vec::new(), span: self.reach };
+                squares.entry(square).or_insert_with(encounter).seen.push(sight);
             }
         }
         Ok(Encounter::merged(squares.into_values(), &self.squares))
@@ -212,26 +220,5 @@ impl ContactSolver {
             None => None,
         };
         Some(ContactConstraint { gap: encounter.gap(), bodies: pair, square, position, normal, on_a, on_b })
-    }
-
-    /// Where bodies are near each other.
-    pub fn constraints(&self) -> &[ContactConstraint] {
-        &self.constraints
-    }
-
-    /// Forgets the impulses to start from: the bodies are numbered anew.
-    pub(crate) fn forget_impulses(&mut self) {
-        self.last.clear();
-    }
-
-    /// What contact took and gave so far.
-    pub fn ledger(&self) -> ContactLedger {
-        self.ledger
-    }
-
-    /// Heap memory, bytes.
-    pub fn bytes(&self) -> usize {
-        let rigid: usize = self.rigid.iter().map(|body| body.bytes()).sum();
-        self.constraints.len() * size_of::<ContactConstraint>() + rigid
     }
 }

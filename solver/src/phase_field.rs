@@ -91,7 +91,7 @@ pub struct PhaseField {
     model: FractureModel,
     tolerance: f64,
     matrix: Stencil,
-    load: Vec<f64>,
+    pub(crate) load: Vec<f64>,
     /// Control values, and those of the solve before.
     phase: Vec<f64>,
     previous: Vec<f64>,
@@ -102,7 +102,7 @@ pub struct PhaseField {
     lag: Option<Box<Lag>>,
     /// If the model has a threshold.
     bounds: Option<Box<Bounds>>,
-    counts: PhaseFieldCounts,
+    pub(crate) counts: PhaseFieldCounts,
 }
 
 impl PhaseField {
@@ -218,29 +218,9 @@ impl PhaseField {
         self.load = load;
     }
 
-    /// Right-hand side.
-    pub(crate) fn load(&self) -> &[f64] {
-        &self.load
-    }
-
     /// Control values of c.
     pub fn control_values(&self) -> &[f64] {
         &self.phase
-    }
-
-    /// Counters so far.
-    pub(crate) fn counts(&self) -> PhaseFieldCounts {
-        self.counts
-    }
-
-    /// Begins to count anew, as if nothing had been solved yet.
-    pub(crate) fn forget_counts(&mut self) {
-        self.counts = PhaseFieldCounts::default();
-    }
-
-    /// Counts the work of another solver as its own.
-    pub(crate) fn count_also(&mut self, counts: PhaseFieldCounts) {
-        self.counts = self.counts.plus(counts);
     }
 
     /// Solves for c with the history energy (J/m³) of every batch of points.
@@ -390,7 +370,7 @@ impl PhaseField {
         self.matrix.bytes()
             + 8 * vectors
             + self.method.bytes()
-            + self.lag.as_ref().map_or(0, |lag| lag.bytes())
+            + self.lag.as_ref().map_or(0, |lag| 16 * lag.solved.len())
             + self.bounds.as_ref().map_or(0, |bounds| bounds.bytes())
     }
 }
@@ -422,24 +402,16 @@ fn add_forms(
 /// Holds control points at `c = 1` that see no material, or so little of it that they cannot change c
 /// anywhere.
 fn isolate_empty(matrix: &mut Stencil, load: &mut [f64]) {
-    let grid = matrix.grid;
-    let points = || (0..grid.rows).flat_map(|row| (0..grid.columns).map(move |column| (column, row)));
     let value = EMPTY * load.iter().copied().fold(0.0, larger);
-    let largest = points().map(|(column, row)| matrix.diagonal(column, row)).fold(0.0, larger);
-    for (column, row) in points() {
-        if matrix.diagonal(column, row) <= NOTHING * largest {
-            matrix.set_diagonal(column, row, value);
-            load[grid.index(column, row)] = value;
-        }
+    for at in matrix.bare(NOTHING).1 {
+        matrix.set_diagonal(at, value);
+        load[at] = value;
     }
 }
 
 /// Raises the diagonal a little: in a pointed tip just beyond a knot functions are alike to round-off.
 fn separate_small(matrix: &mut Stencil) {
-    let grid = matrix.grid;
-    for (row, column) in (0..grid.rows).flat_map(|row| (0..grid.columns).map(move |column| (row, column))) {
-        matrix.set_diagonal(column, row, matrix.diagonal(column, row) * (1.0 + SEPARATE));
-    }
+    matrix.grid.indices().for_each(|at| matrix.set_diagonal(at, matrix.diagonal(at) * (1.0 + SEPARATE)));
 }
 
 /// A failure with its error in the norm of the tolerance, of a matrix that may not be finite.

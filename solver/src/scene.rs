@@ -186,7 +186,7 @@ impl Default for Contact {
 }
 
 /// What is recorded.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Output {
     /// Rows of the history after the first.
     pub samples: usize,
@@ -205,14 +205,7 @@ pub struct Output {
 impl Output {
     /// So many rows of the history after the first, and nothing else.
     pub fn rows(samples: usize) -> Self {
-        Self {
-            samples,
-            frames: Vec::new(),
-            bodies: false,
-            fragments: false,
-            probes: Vec::new(),
-            j_integrals: Vec::new(),
-        }
+        Self { samples, ..Self::default() }
     }
 }
 

@@ -131,7 +131,7 @@ impl Simulation {
 
     /// The first body of a scene in the total frame, for verification.
     pub fn total_frame(&self) -> Option<&TotalFrame> {
-        if let Bodies::Total(bodies) = &self.frame { bodies.bodies().first() } else { None }
+        if let Bodies::Total(bodies) = &self.frame { bodies.bodies.first() } else { None }
     }
 
     /// The body of a scene in the updated frame, for verification.
@@ -210,7 +210,7 @@ impl Simulation {
         if either!(&self.frame, body => body.phase_field_counts()).is_some() {
             models.push("phase field".to_string());
         }
-        if either!(&self.frame, body => body.has_contact()) {
+        if either!(&self.frame, body => body.contact.is_some()) {
             models.push("contact".to_string());
         }
         let [mechanics_bytes, phase_field_bytes] = either!(&self.frame, body => body.bytes());
@@ -237,7 +237,7 @@ impl Simulation {
     /// Fields on a raster of `pixels` over the patch.
     pub fn picture(&self, pixels: [usize; 2]) -> Picture {
         either!(&self.frame, body => {
-            let raster = Raster::new(body.patch(), pixels);
+            let raster = Raster::new(&body.patch, pixels);
             Picture::new(raster, self.time(), body.paint(&raster))
         })
     }

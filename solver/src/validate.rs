@@ -52,16 +52,12 @@ pub fn validate(scene: &Scene) -> Result<Vec<SceneWarning>, Vec<SceneError>> {
     body::check(scene, &ground, &mut findings);
     contact::check(scene, &ground, &mut findings);
     size::check(scene, &mut findings);
-    unsupported(scene, &mut findings);
-    if findings.errors.is_empty() { Ok(findings.warnings) } else { Err(findings.errors) }
-}
-
-/// What a scene can say and the solver cannot do yet. A feature that arrives deletes its lines here.
-fn unsupported(scene: &Scene, findings: &mut Findings) {
+    // What a scene can say and the solver cannot do yet: a feature that arrives deletes its lines here.
     if scene.analysis.frame == Frame::Updated && scene.mesh.geometry.is_some() {
         let message = "a mesh with control_points or annulus in the updated frame is not supported yet";
         findings.error("analysis.frame", message, "use frame = \"total\", or a rectangle");
     }
+    if findings.errors.is_empty() { Ok(findings.warnings) } else { Err(findings.errors) }
 }
 
 #[cfg(test)]

@@ -180,14 +180,14 @@ fn contact(criterion: &mut Criterion, cells: usize) {
     };
     let (mut apart, mut meeting) = (begun(None), begun(Some(Contact { friction: 0.3, ..Contact::default() })));
     let frame = meeting.updated_frame().expect("the frame of contact");
-    let mut found = frame.contact().expect("it is declared").clone();
+    let mut found = frame.contact.clone().expect("it is declared");
     let forces = frame.contact_forces(meeting.plan().step);
-    assert!(!found.constraints().is_empty() && !forces.is_empty(), "the bodies meet");
+    assert!(!found.constraints.is_empty() && !forces.is_empty(), "the bodies meet");
     let (name, points) = (format!("p2_2x2_{cells}_spans"), meeting.extent().particles);
     let mut timed = |name_of_phase: &str, routine: &mut dyn FnMut()| {
         measure(criterion, name_of_phase, &name, points, |bencher| bencher.iter(&mut *routine));
     };
-    let fields = frame.fields().to_vec();
+    let fields = frame.fields.to_vec();
     let views: Vec<_> = fields.iter().map(|field| field.view()).collect();
     timed("contact_find", &mut || found.find(&views).expect("no body passes another"));
     timed("step_of_two_bodies", &mut || apart.step().expect("a stable step"));

@@ -131,7 +131,7 @@ pub(crate) fn projected(
     field: impl Fn([f64; 2]) -> [f64; 2] + Sync,
 ) -> Result<[Vec<f64>; 2], StudyError> {
     let component = |c: usize| -> Result<Vec<f64>, StudyError> {
-        let projection = Projection::new(frame.lattice(), &frame.constraints().held(c));
+        let projection = Projection::new(&frame.lattice, &frame.constraints.held(c));
         let projection = projection.ok_or_else(|| other("the points do not determine a projection"))?;
         Ok(projection.project(|x| field(x)[c]))
     };

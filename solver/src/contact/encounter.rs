@@ -56,20 +56,12 @@ pub(super) struct Sight {
 pub(super) struct Encounter {
     pub bodies: [usize; 2],
     pub square: [usize; 2],
-    seen: Vec<Sight>,
+    pub seen: Vec<Sight>,
     /// Length of a span, m.
-    span: f64,
+    pub span: f64,
 }
 
 impl Encounter {
-    pub(super) fn new(bodies: [usize; 2], square: [usize; 2], span: f64) -> Self {
-        Self { bodies, square, seen: Vec::new(), span }
-    }
-
-    pub(super) fn see(&mut self, sight: Sight) {
-        self.seen.push(sight);
-    }
-
     /// Mean over the segments, with weights: a curve touches a line at one place, not in all of a square.
     fn mean<const N: usize>(&self, value: impl Fn(&Sight) -> [f64; N]) -> [f64; N] {
         let least = larger(self.seen.iter().map(|sight| sight.gap).fold(f64::INFINITY, smaller), 0.0);

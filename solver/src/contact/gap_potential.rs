@@ -35,6 +35,8 @@ pub(crate) mod rigid_outline;
 pub(crate) mod thin_parts;
 mod winding;
 
+use thiserror::Error;
+
 use super::ContactLedger;
 use super::impulse::ContactForce;
 use super::rigid::RigidPose;
@@ -63,7 +65,8 @@ const LEAST: f64 = 0.25;
 const SKIN: f64 = 1e-9;
 
 /// A boundary that is deeper in another body than contact follows.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[error("a boundary is {spans:.3} spans deep in another body, and contact follows {follows:.3} there")]
 pub struct TooDeep {
     /// Place, m.
     pub place: [f64; 2],
@@ -97,7 +100,7 @@ impl GapForce {
 }
 
 /// Contact of the bodies of a scene.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct GapPotential {
     /// Depth that contact follows where bodies are thick, m: the shortest span.
     reach: f64,
@@ -109,7 +112,7 @@ pub(crate) struct GapPotential {
     /// What may meet of each body that deforms, if bodies may meet themselves.
     own: Vec<OwnPairs>,
     friction: Option<Friction>,
-    forces: Vec<GapForce>,
+    pub forces: Vec<GapForce>,
     energy: f64,
     /// Power of rigid bodies now, W/m, and their work so far, J/m.
     power: f64,
@@ -126,18 +129,8 @@ impl GapPotential {
         thin: Vec<ThinParts>,
         own: Vec<OwnPairs>,
     ) -> Self {
-        Self {
-            reach: span,
-            rules: rules(),
-            rigid,
-            thin,
-            own,
-            friction: Friction::new(friction),
-            forces: Vec::new(),
-            energy: 0.0,
-            power: 0.0,
-            work: 0.0,
-        }
+        let (rules, friction) = (rules(), Friction::new(friction));
+        Self { reach: span, rules, rigid, thin, own, friction, ..Self::default() }
     }
 
     /// Finds the forces at a time, s, `dt` after they were found last, between boundaries that are there now.
@@ -267,11 +260,6 @@ impl GapPotential {
         self.forces.iter().map(of_pair).sum()
     }
 
-    /// The forces that were found last.
-    pub(crate) fn forces(&self) -> &[GapForce] {
-        &self.forces
-    }
-
     /// The same as forces on the body of the higher number.
     pub(crate) fn contact_forces(&self) -> Vec<ContactForce> {
         let ordered = |pair: &GapForce| {
@@ -290,7 +278,7 @@ impl GapPotential {
     /// What contact took and gave so far: the energy that potential and slip hold is lost to the bodies.
     pub(crate) fn ledger(&self) -> ContactLedger {
         let Self { energy, work, friction, .. } = self;
-        let [stored, dissipated] = friction.as_ref().map_or([0.0; 2], |f| [f.stored(), f.dissipated()]);
+        let [stored, dissipated] = friction.as_ref().map_or([0.0; 2], |f| [f.stored, f.dissipated]);
         ContactLedger { loss: energy + stored + dissipated, friction: dissipated, work: *work }
     }
 
@@ -306,15 +294,6 @@ impl GapPotential {
             archive.value(work)?;
         }
         Ok(())
-    }
-
-    /// Heap memory, bytes.
-    pub(crate) fn bytes(&self) -> usize {
-        let rigid: usize = self.rigid.iter().map(RigidOutline::bytes).sum();
-        let own: usize = self.own.iter().map(OwnPairs::bytes).sum();
-        let thin: usize = self.thin.iter().map(ThinParts::bytes).sum();
-        let friction = self.friction.as_ref().map_or(0, Friction::bytes);
-        rigid + own + thin + friction + self.forces.len() * size_of::<GapForce>()
     }
 }
 

@@ -5,6 +5,8 @@ mod direct;
 
 use std::collections::HashMap;
 
+use thiserror::Error;
+
 use super::constraint::{ContactConstraint, Impulse};
 use super::view::BodyView;
 use super::{ContactLedger, ContactSolver};
@@ -55,7 +57,8 @@ pub(crate) struct Push {
 }
 
 /// Impulses that did not converge.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[error("the impulses of contact did not converge in {iterations} iterations: they still change by {residual:.3e}")]
 pub struct Unconverged {
     /// Where the impulse changed most in the last iteration, m.
     pub place: [f64; 2],
@@ -195,7 +198,7 @@ impl ContactSolver {
                     weights.extend(on_b.weights().iter().map(|&(at, w)| (number(b, at), w)));
                     [0.0; 2]
                 }
-                None => self.rigid[b - bodies.len()].velocity_at(constraint.position),
+                None => self.rigid[b - bodies.len()].pose.velocity_at(constraint.position),
             };
             let impulse = self
                 .last
@@ -382,5 +385,3 @@ impl ContactLedger {
 
 #[cfg(test)]
 mod tests;
-#[cfg(test)]
-mod three_fields;

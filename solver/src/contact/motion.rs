@@ -2,6 +2,8 @@
 //! span between two looks is through before it is seen. Bodies that slide along each other, turn in each
 //! other or part are not.
 
+use thiserror::Error;
+
 use super::area::ShapeIntegrals;
 use super::outline::without_patch;
 use super::surface::{Center, Surface};
@@ -21,7 +23,8 @@ const SEGMENTS: f64 = 256.0;
 const ROUND_OFF: f64 = 1e-9;
 
 /// Bodies that are about to meet approach each other too far in a step.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[error("bodies that are about to meet approach each other by {spans:.3} spans in a step, and contact follows {MOST}")]
 pub struct TooFast {
     /// Between them, m.
     pub place: [f64; 2],

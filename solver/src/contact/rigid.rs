@@ -82,11 +82,11 @@ impl RigidPose {
 /// A rigid body.
 #[derive(Debug, Clone)]
 pub(crate) struct RigidBody {
-    surface: Surface,
+    pub surface: Surface,
     /// Vertices of the surface at t = 0, m.
     reference: Vec<[f64; 2]>,
     motion: RigidMotion,
-    pose: RigidPose,
+    pub pose: RigidPose,
 }
 
 impl RigidBody {
@@ -94,7 +94,7 @@ impl RigidBody {
     pub(crate) fn new(mesh: &Mesh, body: &Body) -> Self {
         let surface = Surface::new(mesh, body);
         let motion = RigidMotion::new(mesh, body);
-        Self { reference: surface.positions().to_vec(), surface, pose: motion.at(0.0), motion }
+        Self { reference: surface.vertices.clone(), surface, pose: motion.at(0.0), motion }
     }
 
     /// Moves to the place it has at a time, s, and expects a step of `dt` seconds.
@@ -106,20 +106,5 @@ impl RigidBody {
         let Self { surface, reference, pose, .. } = self;
         surface.place(|vertex| pose.place(reference[vertex]));
         surface.expect_displacements(|position| pose.velocity_at(position).map(|v| dt * v));
-    }
-
-    /// Velocity at a position, m/s.
-    pub(crate) fn velocity_at(&self, position: [f64; 2]) -> [f64; 2] {
-        self.pose.velocity_at(position)
-    }
-
-    /// Its boundary now.
-    pub(crate) fn surface(&self) -> &Surface {
-        &self.surface
-    }
-
-    /// Heap memory, bytes.
-    pub(crate) fn bytes(&self) -> usize {
-        self.surface.bytes() + self.reference.len() * size_of::<[f64; 2]>()
     }
 }

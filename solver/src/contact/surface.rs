@@ -1,6 +1,5 @@
 //! The boundary of a body as segments between vertices that move with it, and distances from it.
 
-use super::displacements::Range;
 use super::outline::{bounds, perimeter, rings, spacing, without_patch};
 use crate::checkpoint::{Archive, StateError};
 use crate::linear_algebra::extremes::around;
@@ -23,7 +22,7 @@ pub struct Surface {
     /// Segments that end and begin at each vertex.
     pub(super) neighbours: Vec<[Option<u32>; 2]>,
     /// Where it was without material first, m.
-    pub(super) opened: Option<[f64; 2]>,
+    pub opened: Option<[f64; 2]>,
 }
 
 /// The point of a boundary that is nearest to a position.
@@ -125,16 +124,6 @@ impl Surface {
         self.displacements = self.vertices.iter().map(|vertex| displacement(*vertex)).collect();
     }
 
-    /// Displacements of all vertices, m.
-    pub fn displacements(&self) -> Range {
-        Range::of(self.displacements.iter().copied())
-    }
-
-    /// Where the boundary was without material first, m, if it ever was.
-    pub fn opened(&self) -> Option<[f64; 2]> {
-        self.opened
-    }
-
     /// Stores or takes up what steps change.
     ///
     /// # Errors
@@ -147,17 +136,10 @@ impl Surface {
         archive.value(opened)?;
         let ends = segments.iter().flatten().all(|&vertex| (vertex as usize) < vertices.len());
         if !ends || displacements.len() != vertices.len() {
-            return Err(StateError(
-                "the state belongs to another scene: the boundary of a body is not valid".to_string(),
-            ));
+            return Err(StateError::of_another_scene("the boundary of a body is not valid"));
         }
         self.find_neighbours();
         Ok(())
-    }
-
-    /// Positions of the vertices, m.
-    pub fn positions(&self) -> &[[f64; 2]] {
-        &self.vertices
     }
 
     /// Box around the boundary: lower left and upper right corner, m.
@@ -251,12 +233,6 @@ impl Surface {
 
     pub(super) fn ends(&self, segment: u32) -> [[f64; 2]; 2] {
         self.segments[segment as usize].map(|vertex| self.vertices[vertex as usize])
-    }
-
-    /// Heap memory, bytes.
-    pub fn bytes(&self) -> usize {
-        let per_vertex = 2 * size_of::<[f64; 2]>() + size_of::<[Option<u32>; 2]>();
-        self.vertices.len() * per_vertex + self.segments.len() * size_of::<[u32; 2]>()
     }
 }
 

@@ -12,7 +12,7 @@ use crate::scene::Boundary;
 pub struct Constraints {
     /// Per component: control point, and number of its condition, in increasing order.
     fixed: [Vec<(usize, usize)>; 2],
-    conditions: Vec<Boundary>,
+    pub(crate) conditions: Vec<Boundary>,
     /// Two conditions on one side that prescribe a component of the same control point differently.
     pub(crate) contradiction: Option<[usize; 2]>,
 }
@@ -46,11 +46,6 @@ impl Constraints {
         let mut some = self.clone();
         some.fixed.iter_mut().for_each(|fixed| fixed.retain(|(at, _)| takes(*at)));
         some
-    }
-
-    /// The conditions.
-    pub(crate) fn conditions(&self) -> &[Boundary] {
-        &self.conditions
     }
 
     /// Prescribed components: control point, component, number of the condition.

@@ -1,5 +1,7 @@
 //! Why a body cannot begin, or take a step.
 
+use thiserror::Error;
+
 use super::loads::LostTraction;
 use crate::contact::gap_potential::TooDeep;
 use crate::contact::impulse::Unconverged;
@@ -8,19 +10,25 @@ use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::particles::points::OutsidePatch;
 
 /// Why a body cannot begin, or take a step.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum Failure {
     /// The phase field could not be solved for.
-    PhaseField(SolveFailure),
+    #[error("the phase-field solve {0}")]
+    PhaseField(#[from] SolveFailure),
     /// A point left the patch, m.
+    #[error("a point left the mesh")]
     Left([f64; 2]),
     /// The consistent mass matrix is singular to round-off.
+    #[error("the consistent mass matrix is singular to round-off")]
     SingularMass,
     /// The critical time step is not a number.
+    #[error("the critical time step is not a number")]
     NoStep,
     /// The body of that number in the scene holds no material point.
+    #[error("the body holds no material point")]
     NoPoints(usize),
     /// A part of a traction would not act.
+    #[error("{lost}")]
     LostTraction {
         /// Number of the body in the scene.
         body: usize,
@@ -30,8 +38,10 @@ pub enum Failure {
         lost: LostTraction,
     },
     /// The part of a side of that condition holds no control point with mass.
+    #[error("the part of the side holds no control point of a body")]
     HoldsNothing(usize),
     /// There is no material at a place (m) on the edge of that condition of the body.
+    #[error("there is no material point within a cell of ({:.6e}, {:.6e}) m, where the condition acts", place[0], place[1])]
     LostCondition {
         /// Number of the body in the scene.
         body: usize,
@@ -41,6 +51,7 @@ pub enum Failure {
         place: [f64; 2],
     },
     /// What that condition of the body prescribes follows from what others prescribe.
+    #[error("what is prescribed along this edge follows from what is prescribed beside it or on it")]
     HeldTwice {
         /// Number of the body in the scene.
         body: usize,
@@ -48,19 +59,26 @@ pub enum Failure {
         condition: usize,
     },
     /// Two conditions whose parts of a side share a control point and prescribe it differently.
+    #[error("boundary.{} and boundary.{} prescribe the control point between them differently", .0[0], .0[1])]
     Contradiction([usize; 2]),
     /// No static state was found: the largest force out of balance, of the largest nodal force.
+    #[error("no static state was found: {0:.1e} of the largest nodal force is out of balance")]
     NoEquilibrium(f64),
     /// The loads of a static start accelerate a body that nothing holds: their resultant, of their
     /// magnitudes.
+    #[error("the loads at t = 0 have a resultant of {0:.1e} of their size, and nothing holds the body")]
     Unbalanced(f64),
     /// Impulses of contact did not converge.
-    Unconverged(Unconverged),
+    #[error(transparent)]
+    Unconverged(#[from] Unconverged),
     /// Bodies meet that approach each other too far in a step.
-    TooFast(TooFast),
+    #[error(transparent)]
+    TooFast(#[from] TooFast),
     /// A boundary is too deep in another body.
-    TooDeep(TooDeep),
+    #[error(transparent)]
+    TooDeep(#[from] TooDeep),
     /// There is no material at a place (m) of the boundary of the body of that number.
+    #[error("there is no material point within a cell of ({:.6e}, {:.6e}) m on the boundary of the body", place[0], place[1])]
     BareBoundary {
         /// Number of the body in the scene.
         body: usize,
@@ -81,11 +99,19 @@ impl Failure {
             other => other,
         }
     }
-}
 
-impl From<SolveFailure> for Failure {
-    fn from(failure: SolveFailure) -> Self {
-        Self::PhaseField(failure)
+    /// Where it is, m, if it is at one place.
+    pub(crate) fn place(self) -> Option<[f64; 2]> {
+        match self {
+            Self::Left(place)
+            | Self::BareBoundary { place, .. }
+            | Self::LostCondition { place, .. }
+            | Self::Unconverged(Unconverged { place, .. })
+            | Self::TooFast(TooFast { place, .. })
+            | Self::TooDeep(TooDeep { place, .. }) => Some(place),
+            Self::LostTraction { lost, .. } => Some(lost.place()),
+            _ => None,
+        }
     }
 }
 

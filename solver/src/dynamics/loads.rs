@@ -7,6 +7,8 @@
 
 use std::collections::BTreeMap;
 
+use thiserror::Error;
+
 use crate::dynamics::surface::{SurfacePoint, edge_ends, surface_points};
 use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::extremes::larger;
@@ -57,13 +59,18 @@ pub fn boundary_points(patch: &Patch, body: &Body, side: Side) -> Vec<BoundaryPo
 }
 
 /// A traction of which a part would not act on the body.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum LostTraction {
     /// No material carries the edge at a place (m): there is none within one span of it.
+    #[error("there is no material point within a cell of ({:.6e}, {:.6e}) m, where the traction acts", .0[0], .0[1])]
     Bare([f64; 2]),
     /// Its stress field is not finite at a place, m.
+    #[error("the stress field is not finite at ({}, {}) m", .0[0], .0[1])]
     NotFinite([f64; 2]),
     /// The nodal forces are not those of the edge.
+    #[error(
+        "the forces on the control points miss the traction by {force:.1e} of its force and {moment:.1e} of its moment"
+    )]
     Unbalanced {
         /// Middle of the edge, m.
         place: [f64; 2],
@@ -72,6 +79,14 @@ pub enum LostTraction {
         /// Error of the moment about the middle, of the force times the length.
         moment: f64,
     },
+}
+
+impl LostTraction {
+    /// Where, m.
+    pub(crate) fn place(self) -> [f64; 2] {
+        let (Self::Bare(place) | Self::NotFinite(place) | Self::Unbalanced { place, .. }) = self;
+        place
+    }
 }
 
 /// What the nodal forces of a uniform traction have to add up to: the length of its edge (m) and the middle

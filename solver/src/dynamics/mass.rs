@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use crate::dynamics::failure::Failure;
 use crate::linear_algebra::active_columns::ActiveColumns;
 use crate::linear_algebra::cholesky::{Factor, SparseCholesky};
-use crate::linear_algebra::control_grid::{CHUNK_ROWS, ControlGrid, VectorField};
+use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
 use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::stencil::Stencil;
 use crate::particles::lattice::Lattice;
@@ -26,7 +26,8 @@ const CHUNK: usize = 4096;
 /// Mass per unit thickness, kg/m.
 #[derive(Debug, Clone)]
 pub struct MassMatrix {
-    row_sums: Vec<f64>,
+    /// Row sums, kg/m: the mass of each control point.
+    pub row_sums: Vec<f64>,
     /// Row sums up to this, kg/m, are taken for none.
     negligible: f64,
     kind: MassKind,
@@ -85,11 +86,6 @@ impl MassMatrix {
         self.row_sums = row_sums;
     }
 
-    /// Row sums, kg/m: the mass of each control point.
-    pub fn row_sums(&self) -> &[f64] {
-        &self.row_sums
-    }
-
     /// Forces become accelerations: `M⁻¹ f`, zero where held (consistent mass) or without mass.
     pub(crate) fn divide(&self, forces: &mut VectorField) {
         for component in 0..2 {
@@ -100,13 +96,9 @@ impl MassMatrix {
     /// [`Self::divide`] where control points are in use.
     pub(crate) fn divide_in_use(&self, in_use: &ActiveColumns, grid: ControlGrid, forces: &mut VectorField) {
         let MassKind::Lumped { inverse } = &self.kind else { return self.divide(forces) };
-        let chunk = CHUNK_ROWS * grid.stride;
         for force in forces {
-            let chunks = force.par_chunks_mut(chunk).zip(inverse.par_chunks(chunk)).enumerate();
-            chunks.for_each(|(index, (force, inverse))| {
-                for used in in_use.in_chunk(grid, index) {
-                    force[used.clone()].iter_mut().zip(&inverse[used]).for_each(|(f, inverse)| *f *= inverse);
-                }
+            in_use.for_each_part(grid, force, |used, force| {
+                force.iter_mut().zip(&inverse[used]).for_each(|(f, inverse)| *f *= inverse);
             });
         }
     }

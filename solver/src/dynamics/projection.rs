@@ -27,7 +27,7 @@ impl<'a> Projection<'a> {
         let mut matrix = Stencil::zeros(lattice.grid, lattice.degree);
         add_form(&mut matrix, lattice, Integrand::Mass, &Constant(1.0));
         let grid = lattice.grid;
-        let is_empty = |at: &usize| matrix.diagonal(grid.column_of(*at), grid.row_of(*at)) == 0.0;
+        let is_empty = |at: &usize| matrix.diagonal(*at) == 0.0;
         let out: Vec<usize> = held.iter().copied().chain(grid.indices().filter(is_empty)).collect();
         Some(Self { lattice, factor: SparseCholesky::default().factor(&matrix, &out)? })
     }

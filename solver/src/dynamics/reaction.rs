@@ -16,11 +16,11 @@ use crate::linear_algebra::vectors::dot;
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(in crate::dynamics) struct Reaction {
     /// Force on the body at the present whole step, and at the one before, N/m.
-    force: [[f64; 2]; 2],
+    pub(in crate::dynamics) force: [[f64; 2]; 2],
     /// Velocity in the step to come, and in the last one, m/s.
-    velocity: [[f64; 2]; 2],
+    pub(in crate::dynamics) velocity: [[f64; 2]; 2],
     /// Work so far, J/m.
-    work: f64,
+    pub(in crate::dynamics) work: f64,
 }
 
 impl Reaction {
@@ -34,46 +34,11 @@ impl Reaction {
         self.velocity = [velocity, self.velocity[0]];
     }
 
-    /// Velocity in the step to come, m/s.
-    pub(in crate::dynamics) fn next_velocity(&self) -> [f64; 2] {
-        self.velocity[0]
-    }
-
-    /// Velocity in the last step, m/s.
-    pub(in crate::dynamics) fn last_velocity(&self) -> [f64; 2] {
-        self.velocity[1]
-    }
-
-    /// Begins with a velocity (m/s) and without a force.
-    pub(in crate::dynamics) fn at_start(velocity: [f64; 2]) -> Self {
-        Self { velocity: [velocity; 2], ..Self::default() }
-    }
-
-    /// Sets the force at the present whole step, N/m.
-    pub(in crate::dynamics) fn set(&mut self, force: [f64; 2]) {
-        self.force[0] = force;
-    }
-
-    /// Adds work that was found elsewhere, J/m.
-    pub(in crate::dynamics) fn add_work(&mut self, work: f64) {
-        self.work += work;
-    }
-
     /// Books the work (J/m) of an impulse (N s/m) with the velocity of the step to come.
     pub(in crate::dynamics) fn push(&mut self, impulse: [f64; 2]) -> f64 {
         let added = dot(impulse, self.velocity[0]);
         self.work += added;
         added
-    }
-
-    /// Leaves the work so far to another one.
-    pub(in crate::dynamics) fn forget_work(&mut self) {
-        self.work = 0.0;
-    }
-
-    /// Adds a component of a force at the present whole step, N/m.
-    pub(in crate::dynamics) fn add(&mut self, component: usize, force: f64) {
-        self.force[0][component] += force;
     }
 
     /// Books the work over the last step of `dt` seconds, J/m.

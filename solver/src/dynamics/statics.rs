@@ -29,16 +29,16 @@ impl<'a> StaticSolver<'a> {
     /// shift, or has too few points. Conditions on edges of the body are not known to it.
     pub fn new(frame: &'a TotalFrame, shift: f64) -> Option<Self> {
         let free = frame.free_components();
-        let grid = frame.lattice().grid;
+        let grid = frame.lattice.grid;
         let mut number = [vec![usize::MAX; grid.len()], vec![usize::MAX; grid.len()]];
         for (n, &(at, component)) in free.iter().enumerate() {
             number[component][at] = n;
         }
-        let [p, q] = frame.lattice().degree;
+        let [p, q] = frame.lattice.degree;
         let reach = [2 * p + 1, 2 * q + 1];
         let mut triplets = Vec::new();
         let mut image = [grid.zeros(), grid.zeros()];
-        let mut strips = frame.strip_forces();
+        let mut strips = frame.strip_forces.clone();
         for colour in 0..2 * reach[0] * reach[1] {
             let (component, i, j) = (colour % 2, colour / 2 % reach[0], colour / 2 / reach[0]);
             let mut probe = [grid.zeros(), grid.zeros()];
@@ -72,13 +72,13 @@ impl<'a> StaticSolver<'a> {
     /// Displacement (m) under nodal forces per unit thickness (N/m); at the components that boundaries hold
     /// it is that of `prescribed`.
     pub fn solve(&self, forces: &VectorField, prescribed: &VectorField) -> VectorField {
-        let grid = self.frame.lattice().grid;
+        let grid = self.frame.lattice.grid;
         let mut displacement = prescribed.clone();
         for &(at, component) in &self.free {
             displacement[component][at] = 0.0;
         }
         let mut image = [grid.zeros(), grid.zeros()];
-        shifted_forces(self.frame, self.shift, &displacement, &mut self.frame.strip_forces(), &mut image);
+        shifted_forces(self.frame, self.shift, &displacement, &mut self.frame.strip_forces.clone(), &mut image);
         let right = |&(at, component): &(usize, usize)| forces[component][at] - image[component][at];
         let mut solution = Mat::from_fn(self.free.len(), 1, |n, _| right(&self.free[n]));
         self.factor.solve_in_place(solution.as_mut());
@@ -93,9 +93,9 @@ impl<'a> StaticSolver<'a> {
 fn shifted_forces(frame: &TotalFrame, shift: f64, u: &VectorField, strips: &mut StripForces, out: &mut VectorField) {
     frame.elastic_forces(u, strips, out);
     if shift != 0.0 {
-        let mut inertia = frame.lattice().grid.zeros();
+        let mut inertia = frame.lattice.grid.zeros();
         for component in 0..2 {
-            frame.mass().multiply(&u[component], &mut inertia);
+            frame.mass.multiply(&u[component], &mut inertia);
             out[component].iter_mut().zip(&inertia).for_each(|(f, m)| *f += shift * m);
         }
     }

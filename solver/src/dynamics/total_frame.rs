@@ -27,16 +27,13 @@ mod state;
 pub(crate) mod stiffness;
 mod tangent;
 
-use rayon::prelude::*;
-
 use crate::dynamics::constraints::Constraints;
 use crate::dynamics::energy::Ledger;
 use crate::dynamics::loads::NodalLoad;
 use crate::dynamics::mass::MassMatrix;
 use crate::linear_algebra::active_columns::ActiveColumns;
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
-use crate::linear_algebra::control_grid::VectorField;
-use crate::linear_algebra::control_grid::{CHUNK_ROWS, ControlGrid};
+use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
 use crate::material::elasticity::ElasticModuli;
 use crate::particles::lattice::Lattice;
 use crate::phase_field::fracture::LatticeFracture;
@@ -55,10 +52,13 @@ use probe::ProbePlace;
 /// One body in the total frame.
 #[derive(Debug, Clone)]
 pub struct TotalFrame {
-    patch: Patch,
+    /// Background patch.
+    pub patch: Patch,
     grid: ControlGrid,
-    lattice: Lattice,
-    moduli: ElasticModuli,
+    /// Material points.
+    pub lattice: Lattice,
+    /// Moduli.
+    pub moduli: ElasticModuli,
     kinematics: Kinematics,
     shape: Shape,
     thickness: f64,
@@ -66,19 +66,23 @@ pub struct TotalFrame {
     loads: Vec<NodalLoad>,
     /// Loads that vary in space, if there are any.
     forced: Option<Box<LatticeForcing>>,
-    constraints: Constraints,
+    /// Sides with prescribed velocity.
+    pub constraints: Constraints,
     /// Conditions on edges that are not sides of the mesh, if there are any.
     edges: Option<Box<EdgeConditions>>,
     /// The boundary, if it may meet others.
     boundary: Option<Box<MaterialBoundary>>,
-    mass: MassMatrix,
+    /// Mass per unit thickness.
+    pub mass: MassMatrix,
     /// Control points in use: all, unless the body has other levels.
     in_use: ActiveColumns,
-    displacement: VectorField,
-    velocity: VectorField,
+    /// Control values of the displacement, m.
+    pub displacement: VectorField,
+    /// Control values of the velocity, m/s.
+    pub velocity: VectorField,
     acceleration: VectorField,
     internal: VectorField,
-    strip_forces: StripForces,
+    pub(crate) strip_forces: StripForces,
     /// The phase field, if the material fractures.
     pub fracture: Option<LatticeFracture>,
     probes: Vec<ProbePlace>,
@@ -167,20 +171,10 @@ impl TotalFrame {
 
     /// `v ← v + dt/2 a`, `u ← u + dt v`, t ← t + dt.
     fn predict(&mut self, dt: f64) {
-        let chunk = CHUNK_ROWS * self.grid.stride;
-        for component in 0..2 {
-            let v = self.velocity[component].par_chunks_mut(chunk);
-            let u = self.displacement[component].par_chunks_mut(chunk);
-            v.zip(u).zip(self.acceleration[component].par_chunks(chunk)).enumerate().for_each(
-                |(index, ((v, u), a))| {
-                    for used in self.in_use.in_chunk(self.grid, index) {
-                        for ((v, u), a) in v[used.clone()].iter_mut().zip(&mut u[used.clone()]).zip(&a[used]) {
-                            *v += 0.5 * dt * a;
-                            *u += dt * *v;
-                        }
-                    }
-                },
-            );
+        let Self { in_use, grid, velocity, displacement, acceleration, .. } = self;
+        for ((v, u), a) in velocity.iter_mut().zip(displacement).zip(acceleration) {
+            in_use.for_each_part(*grid, v, |used, v| v.iter_mut().zip(&a[used]).for_each(|(v, a)| *v += 0.5 * dt * a));
+            in_use.for_each_part(*grid, u, |used, u| u.iter_mut().zip(&v[used]).for_each(|(u, v)| *u += dt * v));
         }
         self.lattice.spread(&mut self.displacement);
         self.time += dt;
@@ -188,15 +182,10 @@ impl TotalFrame {
 
     /// `v ← v + dt/2 a`.
     fn correct(&mut self, dt: f64) {
-        let chunk = CHUNK_ROWS * self.grid.stride;
-        for component in 0..2 {
-            let v = self.velocity[component].par_chunks_mut(chunk);
-            v.zip(self.acceleration[component].par_chunks(chunk)).enumerate().for_each(|(index, (v, a))| {
-                for used in self.in_use.in_chunk(self.grid, index) {
-                    for (v, a) in v[used.clone()].iter_mut().zip(&a[used]) {
-                        *v += fault!("whole-kick", 0.5 * dt => dt) * a;
-                    }
-                }
+        let part = fault!("whole-kick", 0.5 * dt => dt);
+        for (v, a) in self.velocity.iter_mut().zip(&self.acceleration) {
+            self.in_use.for_each_part(self.grid, v, |used, v| {
+                v.iter_mut().zip(&a[used]).for_each(|(v, a)| *v += part * a);
             });
         }
         self.lattice.spread(&mut self.velocity);
@@ -285,17 +274,12 @@ impl TotalFrame {
 
     /// `f_ext − f_int` in the room of the acceleration.
     fn external_minus_internal(&mut self) {
-        let chunk = CHUNK_ROWS * self.grid.stride;
-        for component in 0..2 {
+        let mass = &self.mass.row_sums;
+        for (component, (a, f)) in self.acceleration.iter_mut().zip(&self.internal).enumerate() {
             let gravity = fault!("gravity-upwards", self.gravity[component] => -self.gravity[component]);
-            let a = self.acceleration[component].par_chunks_mut(chunk);
-            let mass = self.mass.row_sums().par_chunks(chunk);
-            a.zip(self.internal[component].par_chunks(chunk)).zip(mass).enumerate().for_each(|(index, ((a, f), m))| {
-                for used in self.in_use.in_chunk(self.grid, index) {
-                    for ((a, f), m) in a[used.clone()].iter_mut().zip(&f[used.clone()]).zip(&m[used]) {
-                        *a = gravity * m - f;
-                    }
-                }
+            self.in_use.for_each_part(self.grid, a, |used, a| {
+                let forces = f[used.clone()].iter().zip(&mass[used]);
+                a.iter_mut().zip(forces).for_each(|(a, (f, m))| *a = gravity * m - f);
             });
         }
         for load in &self.loads {
@@ -320,7 +304,7 @@ impl TotalFrame {
             power += 0.5 * load.power([before, load.factor.at(self.time)], velocity);
         }
         for (component, gravity) in self.gravity.into_iter().enumerate().filter(|(_, g)| *g != 0.0) {
-            power += gravity * self.mass.row_sums().iter().zip(&velocity[component]).map(|(m, v)| m * v).sum::<f64>();
+            power += gravity * self.mass.row_sums.iter().zip(&velocity[component]).map(|(m, v)| m * v).sum::<f64>();
         }
         if let Some(forced) = &self.forced {
             power += forced.mean_power(velocity);

@@ -64,18 +64,20 @@ use crate::linear_algebra::extremes::smaller;
 use crate::scene::Scene;
 use crate::splines::patch::Patch;
 use field::DiscreteField;
-use fragments::Fragments;
 
 /// The bodies of a scene in the updated frame.
 #[derive(Debug, Clone)]
 pub struct UpdatedFrame {
-    patch: Arc<Patch>,
-    fields: Vec<DiscreteField>,
+    /// Background patch.
+    pub patch: Arc<Patch>,
+    /// The fields of the bodies that deform: of those that are whole, or of fragments.
+    pub fields: Vec<DiscreteField>,
     /// Number of the body that each field is of, or is a fragment of.
     bodies: Vec<usize>,
-    contact: Option<ContactSolver>,
-    /// If bodies may fall into fragments.
-    fragments: Option<Fragments>,
+    /// Contact of the bodies, if the scene declares it.
+    pub contact: Option<ContactSolver>,
+    /// Steps since bodies were checked for fragments, if they may fall into some.
+    fragments: Option<usize>,
     thickness: f64,
     /// Names in columns of the bodies that are recorded one by one, rigid ones last.
     recorded: Option<Vec<String>>,
@@ -97,12 +99,12 @@ impl UpdatedFrame {
         let contact = ContactSolver::new(scene, &patch);
         let recorded = scene.output.bodies.then(|| body_sample::names(scene));
         let parts = scene.contact.as_ref().is_some_and(|contact| contact.fragments);
-        let fragments = parts.then(Fragments::default);
+        let fragments = parts.then_some(0);
         let thickness = scene.analysis.thickness;
         let mut frame = Self { patch, fields, bodies, contact, fragments, thickness, recorded };
         frame.part_at_start()?;
         if let Some(contact) = &mut frame.contact {
-            contact.find(&views(&frame.fields)).map_err(Failure::TooFast)?;
+            contact.find(&views(&frame.fields))?;
         }
         Ok(frame)
     }
@@ -117,7 +119,7 @@ impl UpdatedFrame {
         self.fields.iter_mut().for_each(|field| field.expect_motion(dt));
         contact.set_step(dt);
         contact.move_rigid(0.0);
-        contact.find(&views(&self.fields)).map_err(Failure::TooFast)?;
+        contact.find(&views(&self.fields))?;
         Ok(())
     }
 
@@ -131,7 +133,7 @@ impl UpdatedFrame {
         let Self { fields, contact, .. } = self;
         if let Some(contact) = contact {
             contact.set_step(dt);
-            for push in contact.act(&views(fields), kick).map_err(Failure::Unconverged)? {
+            for push in contact.act(&views(fields), kick)? {
                 fields[push.body].add_acceleration(push.at, push.acceleration);
             }
             fields.iter_mut().for_each(|field| field.hold_pushed(dt));
@@ -141,7 +143,7 @@ impl UpdatedFrame {
         let Self { fields, contact, .. } = self;
         if let Some(contact) = contact {
             contact.move_rigid(fields[0].time());
-            contact.find(&views(fields)).map_err(Failure::TooFast)?;
+            contact.find(&views(fields))?;
         }
         Ok(())
     }
@@ -154,11 +156,6 @@ impl UpdatedFrame {
     /// Critical time step of the undamaged bodies at the present positions, s; infinite if nothing can move.
     pub fn critical_step(&self) -> f64 {
         self.fields.iter().map(|field| field.critical_step()).fold(f64::INFINITY, smaller)
-    }
-
-    /// Number of the body that a field is of, or is a part of.
-    fn body_of(&self, field: usize) -> usize {
-        self.bodies[field]
     }
 
     /// Takes the critical time step (s) again if a point may have moved a quarter of the shortest span since

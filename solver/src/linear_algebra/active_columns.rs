@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use rayon::prelude::*;
+
 use super::control_grid::{CHUNK_ROWS, ControlGrid};
 use super::lane::{LANES, Scalar};
 
@@ -67,9 +69,20 @@ impl ActiveColumns {
         rows.flat_map(of_row)
     }
 
-    /// The same for a chunk of rows of a field.
-    pub(crate) fn in_chunk(&self, grid: ControlGrid, chunk: usize) -> impl Iterator<Item = Range<usize>> {
-        self.within(grid, chunk * CHUNK_ROWS..((chunk + 1) * CHUNK_ROWS).min(grid.rows))
+    /// Calls `f` for every range of a field (several at once), with its place in the field.
+    pub(crate) fn for_each_part(
+        &self,
+        grid: ControlGrid,
+        field: &mut [f64],
+        f: impl Fn(Range<usize>, &mut [f64]) + Sync,
+    ) {
+        let chunk = CHUNK_ROWS * grid.stride;
+        field.par_chunks_mut(chunk).enumerate().for_each(|(number, part)| {
+            let rows = number * CHUNK_ROWS..((number + 1) * CHUNK_ROWS).min(grid.rows);
+            for used in self.within(grid, rows) {
+                f(number * chunk + used.start..number * chunk + used.end, &mut part[used]);
+            }
+        });
     }
 
     /// Whether there are any in some rows.

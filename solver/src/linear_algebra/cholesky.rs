@@ -67,7 +67,7 @@ impl LowerFactor {
 /// A factored stencil matrix.
 #[derive(Debug, Clone)]
 pub struct Factor {
-    grid: ControlGrid,
+    pub(crate) grid: ControlGrid,
     lower: LowerFactor,
     /// Index in a field of each unknown.
     indices: Vec<usize>,
@@ -103,11 +103,6 @@ impl Factor {
         for (&index, value) in self.indices.iter().zip(solution) {
             x[index] = value;
         }
-    }
-
-    /// Layout of the fields.
-    pub(crate) fn grid(&self) -> ControlGrid {
-        self.grid
     }
 
     /// Heap memory of the factor, bytes; that of the pattern, which factors share, is left out.

@@ -56,7 +56,8 @@ pub struct IncompleteCholesky {
     shift: f64,
     /// S, one over the root of the diagonal of the matrix now; none for a matrix that is factored as it is.
     scale: Option<Vec<f32>>,
-    unit: f64,
+    /// Power of two by which the matrix is multiplied before it is factored.
+    pub unit: f64,
 }
 
 impl IncompleteCholesky {
@@ -111,11 +112,6 @@ impl IncompleteCholesky {
                 }
             }
         }
-    }
-
-    /// What the matrix is multiplied by, a power of two.
-    pub fn unit(&self) -> f64 {
-        self.unit
     }
 
     /// `out = (unit M)⁻¹ r` on the `active` control points, for an `out` that is zero elsewhere; returns
@@ -263,7 +259,7 @@ impl Rows<'_> {
             let reachable = offsets.iter().take_while(|o| row + o.rows < rows).count();
             for column in matrix.active().row(self.first + row).iter().cloned().flatten() {
                 let at = row * row_length + grid.index(column, 0);
-                let own = self.unit * matrix.diagonal(column, self.first + row);
+                let own = self.unit * matrix.row(self.first + row, 0)[grid.index(column, 0)];
                 let diagonal = if self.scale.is_some() && own > 0.0 { 1.0 } else { own };
                 if block[at] <= LEAST_PIVOT * diagonal && shift < LARGEST_SHIFT && diagonal > 0.0 {
                     return false;

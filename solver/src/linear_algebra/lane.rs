@@ -52,7 +52,7 @@ macro_rules! scalar {
 scalar!(f32, f64);
 
 /// One number for each of [`LANES`] neighbouring spans.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[repr(C, align(64))]
 pub struct Lane<T = f64>(pub [T; LANES]);
 

@@ -11,7 +11,7 @@ pub(crate) const ITERATION_LIMIT: usize = 2000;
 /// Working vectors, and the preconditioner as it was left by the last solve.
 #[derive(Debug, Clone)]
 pub(crate) struct PreconditionedSolver {
-    workspace: ConjugateGradients,
+    pub workspace: ConjugateGradients,
     pub preconditioner: Preconditioner,
 }
 
@@ -19,16 +19,6 @@ impl PreconditionedSolver {
     /// For a matrix that is assembled once, or `anew` for every solve.
     pub(crate) fn new(matrix: &Stencil, anew: bool) -> Self {
         Self { workspace: ConjugateGradients::new(matrix), preconditioner: Preconditioner::new(matrix, anew) }
-    }
-
-    /// Working vectors and preconditioner, for a solve on several grids.
-    pub(crate) fn parts(&mut self) -> (&mut ConjugateGradients, &Preconditioner) {
-        (&mut self.workspace, &self.preconditioner)
-    }
-
-    /// Makes ready for the solves of a matrix.
-    pub(crate) fn prepare(&mut self, matrix: &Stencil) {
-        self.preconditioner.prepare(matrix);
     }
 
     /// Improves `x` until its error in the energy norm is about `tolerance`, once prepared. An incomplete
@@ -65,10 +55,5 @@ impl PreconditionedSolver {
                 Err(failure) => return Err(failure),
             }
         }
-    }
-
-    /// Heap memory, bytes.
-    pub(crate) fn bytes(&self) -> usize {
-        self.workspace.bytes() + self.preconditioner.bytes()
     }
 }

@@ -37,7 +37,7 @@ pub struct Preconditioner {
     fresh_iterations: Option<usize>,
     pause: Pause,
     /// Whether the matrix is assembled anew for every solve, and scaled: see [`IncompleteCholesky`].
-    is_scaled: bool,
+    pub(crate) is_scaled: bool,
 }
 
 #[derive(Debug, Clone)]
@@ -71,7 +71,7 @@ impl Preconditioner {
     /// What the matrix is multiplied by, a power of two: see [`IncompleteCholesky::unit`].
     pub fn unit(&self) -> f64 {
         match &self.factor {
-            PreconditionerKind::Incomplete(factor) => factor.unit(),
+            PreconditionerKind::Incomplete(factor) => factor.unit,
             PreconditionerKind::Complete(_, factor) => factor.as_ref().map_or(1.0, |(_, unit)| *unit),
         }
     }
@@ -91,7 +91,7 @@ impl Preconditioner {
                 let mut solution = vec![0.0; out.len()];
                 factor.solve(&right, &mut solution);
                 out.iter_mut().zip(solution).for_each(|(out, solution)| *out = T::of(solution));
-                active.clear_outside(factor.grid(), out, 0);
+                active.clear_outside(factor.grid, out, 0);
                 r.iter().zip(out).map(|(r, out)| (*r).into() * (*out).into()).sum()
             }
         }
@@ -133,11 +133,6 @@ impl Preconditioner {
             PreconditionerKind::Incomplete(factor) => !factor.is_raised(),
             PreconditionerKind::Complete(..) => true,
         }
-    }
-
-    /// Whether matrices are scaled.
-    pub(crate) fn is_scaled(&self) -> bool {
-        self.is_scaled
     }
 
     /// Whether the factor serves one solve alone.
@@ -215,7 +210,7 @@ impl Preconditioner {
 /// there is none.
 fn complete(cholesky: &mut SparseCholesky, matrix: &Stencil) -> Option<(Factor, f64)> {
     let grid = matrix.grid;
-    let empty = |at: &usize| matrix.diagonal(grid.column_of(*at), grid.row_of(*at)) == 0.0;
+    let empty = |at: &usize| matrix.diagonal(*at) == 0.0;
     let mut others = matrix.active().others(grid);
     others.extend(grid.indices().filter(empty));
     others.sort_unstable();

@@ -12,6 +12,7 @@ use rayon::prelude::*;
 
 use crate::linear_algebra::active_columns::ActiveColumns;
 use crate::linear_algebra::control_grid::{CHUNK_ROWS, ControlGrid};
+use crate::linear_algebra::extremes::largest;
 use crate::linear_algebra::lane::{LANES, Lane, Scalar, Vectorised, dispatch};
 use crate::linear_algebra::terms::{Coefficients, Terms};
 
@@ -67,23 +68,30 @@ impl Stencil {
     }
 
     /// All coefficients, for assembly.
-    pub fn coefficients_mut(&mut self) -> &mut [f64] {
+    pub fn coefficients_mut(&mut self) -> &mut Vec<f64> {
         &mut self.coefficients
     }
 
-    pub(crate) fn values_mut(&mut self) -> &mut Vec<f64> {
-        &mut self.coefficients
+    /// Place of the diagonal entry of a control point among the coefficients.
+    fn place_of_diagonal(&self, at: usize) -> usize {
+        self.grid.row_of(at) * self.row_length() + at % self.grid.stride
     }
 
-    /// Diagonal entry of a control point.
-    pub fn diagonal(&self, column: usize, row: usize) -> f64 {
-        self.row(row, 0)[self.grid.index(column, 0)]
+    /// Diagonal entry of a control point, by its index.
+    pub fn diagonal(&self, at: usize) -> f64 {
+        self.coefficients[self.place_of_diagonal(at)]
     }
 
-    /// Sets the diagonal entry of a control point.
-    pub fn set_diagonal(&mut self, column: usize, row: usize, value: f64) {
-        let at = row * self.row_length() + self.grid.index(column, 0);
-        self.coefficients[at] = value;
+    /// Sets the diagonal entry of a control point, by its index.
+    pub fn set_diagonal(&mut self, at: usize, value: f64) {
+        let place = self.place_of_diagonal(at);
+        self.coefficients[place] = value;
+    }
+
+    /// The largest diagonal entry, and the control points that have at most a share of it.
+    pub(crate) fn bare(&self, share: f64) -> (f64, Vec<usize>) {
+        let largest = largest(self.grid.indices().map(|at| self.diagonal(at)));
+        (largest, self.grid.indices().filter(|&at| self.diagonal(at) <= share * largest).collect())
     }
 
     /// `unit (b − A x)` at the control points that take part, in a field that is zero elsewhere, and a copy

@@ -65,7 +65,7 @@ pub struct PointFracture {
 }
 
 /// Extremes of a body of points; of finite numbers only.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Inspection {
     /// Points.
     pub points: usize,
@@ -120,15 +120,7 @@ impl PointState {
 impl Inspection {
     /// Of all points that `for_each` names.
     pub(crate) fn new(fastest: ([f64; 2], f64), for_each: impl FnOnce(&mut dyn FnMut(PointState))) -> Self {
-        let mut inspection = Self {
-            points: 0,
-            not_finite: 0,
-            worst: Vec::with_capacity(WORST + 1),
-            largest_strain: 0.0,
-            largest_stress: 0.0,
-            fracture: None,
-            fastest,
-        };
+        let mut inspection = Self { fastest, ..Self::default() };
         for_each(&mut |point| inspection.look_at(point));
         inspection
     }

@@ -6,8 +6,7 @@
 //! and no torque is lost.
 
 use super::points::{Cells, OutsidePatch};
-use crate::linear_algebra::control_grid::ControlGrid;
-use crate::linear_algebra::control_grid::VectorField;
+use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
 use crate::linear_algebra::extremes::larger;
 use crate::material::hencky::Gradient;
 use crate::splines::nearest_span::nearest_span;
@@ -92,12 +91,7 @@ impl Follower {
 
     /// Calls `f` with control point and value of every shape function at the position.
     pub(crate) fn for_each_function(&self, patch: &Patch, grid: ControlGrid, mut f: impl FnMut(usize, f64)) {
-        let [(column, x), (row, y)] = self.shape_functions(patch);
-        for l in 0..=patch.spaces[1].degree() {
-            for k in 0..=patch.spaces[0].degree() {
-                f(grid.index(column + k, row + l), x.value[k] * y.value[l]);
-            }
-        }
+        self.for_each_gradient(patch, grid, |at, n, _| f(at, n));
     }
 
     /// Calls `f` with control point, value and gradient (1/m) of every shape function at the position.

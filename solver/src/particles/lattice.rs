@@ -38,8 +38,7 @@ use crate::scene::edges::BoundaryEdge;
 use crate::scene::{Body, Crack, Layout, Shape};
 use crate::splines::patch::Patch;
 use crate::splines::quadrature::Rule;
-use crate::splines::spline::MAX_FUNCTIONS;
-use crate::splines::spline::SplineSpace;
+use crate::splines::spline::{MAX_FUNCTIONS, SplineSpace};
 use cut::Rules;
 use tables::Along;
 pub(crate) use tables::{Row, Tile};
@@ -65,7 +64,7 @@ pub struct Lattice {
     pub tiles: Vec<Tile>,
     /// Rows of spans, those of sheets last.
     pub rows: Vec<Row>,
-    patch_rows: usize,
+    pub(crate) patch_rows: usize,
     /// Rows of spans in a strip.
     strip_rows: usize,
     /// What the geometry of the patch adds; absent over a rectangle.
@@ -265,11 +264,6 @@ impl Lattice {
         self.patch_rows.div_ceil(self.strip_rows)
     }
 
-    /// Rows of spans of the patch.
-    pub(crate) fn patch_rows(&self) -> usize {
-        self.patch_rows
-    }
-
     /// Rows of spans in a strip.
     pub(crate) fn strip_rows(&self, strip: usize) -> Range<usize> {
         strip * self.strip_rows..((strip + 1) * self.strip_rows).min(self.rows.len())
@@ -338,9 +332,8 @@ impl Lattice {
     /// Heap memory of what is kept per point, bytes.
     pub fn bytes(&self) -> usize {
         let mapping = self.mapping.as_ref().map_or(0, |mapping| mapping.bytes());
-        let sheets = self.sheets.as_ref().map_or(0, |sheets| sheets.bytes());
         let cut = size_of::<CutBatch>() * self.cut.len();
-        cut + mapping + sheets + self.factor.as_ref().map_or(0, |factor| size_of::<Lane>() * factor.len())
+        cut + mapping + self.factor.as_ref().map_or(0, |factor| size_of::<Lane>() * factor.len())
     }
 
     /// Number of material points.

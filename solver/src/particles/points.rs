@@ -17,7 +17,7 @@ use crate::splines::spline::{MAX_DEGREE, MeanFunctions, SplineSpace};
 const STRIP_ROWS: usize = MAX_DEGREE + 2;
 
 /// What every material point carries.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Point {
     /// Position, m.
     pub position: [f64; 2],
@@ -105,11 +105,9 @@ impl Point {
 
     /// A point at rest with a domain of a width and a height, m.
     pub(crate) fn at_rest(position: [f64; 2], [width, height]: [f64; 2]) -> Self {
-        let [velocity, displacement, offset] = [[0.0; 2]; 3];
-        let (strain, stress) = ([0.0; 3], [0.0; 3]);
         let aspect = fault!("domain-of-equal-sides", width / height => 1.0);
         let (volume, half_width) = (width * height, [0.5 * width, 0.5 * height]);
-        Self { position, velocity, displacement, strain, stress, volume, aspect, half_width, offset }
+        Self { position, volume, aspect, half_width, ..Self::default() }
     }
 
     /// Deforms the domain: a box with the second moments of what `F = I + displacement` makes of it.

@@ -109,10 +109,10 @@ impl PhaseField {
         (lag.apart, lag.since, lag.expected) = (lag.since, 0, false);
         lag.fastest = 0.0;
         let steps = lag.apart as f64;
-        let (grid, least) = (self.matrix.grid, REACH * self.model.diffusion());
+        let least = REACH * self.model.diffusion();
         for at in self.taking_part().flatten() {
             lag.solved[at] = self.phase[at];
-            if self.matrix.diagonal(grid.column_of(at), grid.row_of(at)) > least {
+            if self.matrix.diagonal(at) > least {
                 lag.healing = larger(lag.healing, self.phase[at] - lag.carried[at]);
                 lag.fastest = larger(lag.fastest, (self.previous[at] - self.phase[at]) / steps);
             }

@@ -63,7 +63,7 @@ fn for_each_strip(matrix: &mut Stencil, lattice: &Lattice, assemble: impl Fn(usi
     let row_length = matrix.row_length();
     for colour in 0..2 {
         let mut windows = Vec::new();
-        let (mut rest, mut passed) = (matrix.coefficients_mut(), 0);
+        let (mut rest, mut passed) = (&mut matrix.coefficients_mut()[..], 0);
         for strip in (colour..lattice.patch_strips()).step_by(2) {
             let rows = lattice.strip_control_rows(strip);
             let (_, tail) = std::mem::take(&mut rest).split_at_mut((rows.start - passed) * row_length);

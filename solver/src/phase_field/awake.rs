@@ -21,10 +21,10 @@ pub(crate) struct Awake {
     /// Whether everything takes part in the coming solve.
     pub(super) everything: bool,
     /// Cells of which the driving energy is computed.
-    computed: Vec<bool>,
+    pub computed: Vec<bool>,
     /// Cells whose energy is in the matrix; and all those of their tiles.
     assembled: Vec<bool>,
-    damaged: Vec<bool>,
+    pub damaged: Vec<bool>,
     /// Control points whose value may change, in order, and as marks.
     pub(super) candidates: Vec<usize>,
     is_candidate: Vec<bool>,
@@ -102,16 +102,6 @@ impl Awake {
         self.threshold.iter().copied().fold(f64::INFINITY, smaller)
     }
 
-    /// Cells of which the driving energy is computed.
-    pub(crate) fn computed(&self) -> &[bool] {
-        &self.computed
-    }
-
-    /// Cells where c may be below 1, by tiles.
-    pub(crate) fn damaged(&self) -> &[bool] {
-        &self.damaged
-    }
-
     /// Whether the energy of a cell is in the matrix.
     pub(super) fn is_assembled(&self, cell: usize) -> bool {
         self.assembled[cell]
@@ -167,11 +157,6 @@ impl Awake {
                 }
             }
         }
-    }
-
-    /// Heap memory, bytes.
-    pub(super) fn bytes(&self) -> usize {
-        8 * (self.candidates.len() + self.threshold.len()) + 3 * self.computed.len() + 2 * self.is_candidate.len()
     }
 }
 

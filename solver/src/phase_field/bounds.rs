@@ -37,11 +37,6 @@ impl Linearised {
     fn new(rest: &[f64], batches: usize) -> Box<Self> {
         Box::new(Self { rest: rest.to_vec(), energies: vec![Lane::ZERO; batches], convex: false })
     }
-
-    /// Heap memory, bytes.
-    fn bytes(&self) -> usize {
-        8 * self.rest.len() + size_of::<Lane>() * self.energies.len()
-    }
 }
 
 impl Bounds {
@@ -77,7 +72,7 @@ impl Bounds {
 
     /// Heap memory, bytes.
     pub(super) fn bytes(&self) -> usize {
-        let linearised = self.linearised.as_ref().map_or(0, |linearised| linearised.bytes());
-        8 * (2 * self.residual.len() + self.held.len()) + self.awake.bytes() + linearised
+        let lanes = self.linearised.as_ref().map_or(0, |linearised| linearised.energies.len());
+        16 * self.residual.len() + size_of::<Lane>() * lanes
     }
 }

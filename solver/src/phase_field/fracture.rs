@@ -12,7 +12,6 @@ use crate::material::mesh_toughness::{kappa, rule};
 use crate::material::random_field::RandomField;
 use crate::particles::lattice::Lattice;
 use crate::phase_field::PhaseField;
-use crate::phase_field::awake::Awake;
 use crate::phase_field::lag::LagWork;
 use crate::scene::{Body, Crack, CrackKind, Fracture, Kinematics, SolverSettings};
 use crate::splines::patch::Patch;
@@ -139,13 +138,13 @@ impl LatticeFracture {
             let mut kernels: Vec<_> = strips.map(kernel).collect();
             sweep_with(kinematics, lattice, fields, &mut kernels, Some(forces));
             self.intact_energy = Some(kernels.iter().map(|k| k.energy.sum()).sum());
-            let before = awake.computed().to_vec();
+            let before = awake.computed.clone();
             awake.choose(lattice, &reached, phase);
-            let left = before.iter().zip(awake.computed()).map(|(before, now)| *before && !now);
+            let left = before.iter().zip(&awake.computed).map(|(before, now)| *before && !now);
             let left = self.history.chunks_mut(span).zip(left).filter(|(_, left)| *left);
             left.for_each(|(drive, _)| drive.fill(Lane::ZERO)); // below the level, and not known
         }
-        let mut cells = self.field.awake().map_or(&[][..], Awake::computed).chunks(cells_of_strip);
+        let mut cells = self.field.awake().map_or(&[][..], |awake| &awake.computed).chunks(cells_of_strip);
         let strips = self.history.chunks_mut(chunk);
         let kernel = |history| HistoryUpdate { cells: cells.next().unwrap_or_default(), moduli, model, history };
         let mut kernels: Vec<_> = strips.map(kernel).collect();
@@ -176,15 +175,6 @@ impl LatticeFracture {
         Ok(())
     }
 
-    /// c from the present H.
-    ///
-    /// # Errors
-    /// If the solve does not converge.
-    pub fn solve_phase_field(&mut self, lattice: &Lattice) -> Result<(), SolveFailure> {
-        self.iterations = self.field.solve(lattice, &self.history)?.iterations;
-        Ok(())
-    }
-
     /// Degraded stress at the points and its nodal forces; keeps c and `s (H − psi+)` for the history work of
     /// the next step.
     pub fn degraded_forces(
@@ -204,7 +194,7 @@ impl LatticeFracture {
         let intact = awake.map_or(0.0, |_| swept.unwrap_or_else(sweep));
         // excess is work where c changes: it has to be known before c does
         let knows_excess = model.driving_work().is_some();
-        let visited = awake.map(|awake| if knows_excess { awake.computed() } else { awake.damaged() });
+        let visited = awake.map(|awake| if knows_excess { &awake.computed[..] } else { &awake.damaged });
         let mut cells = visited.unwrap_or_default().chunks(chunk / lattice.points_per_span());
         let updates_history = self.field.is_carried_on() && self.driven.is_empty();
         let mut drive = self.lag_work.iter_mut().flat_map(|work| work.drive.chunks_mut(chunk));

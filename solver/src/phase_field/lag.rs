@@ -80,11 +80,6 @@ impl Lag {
         [apart, since].into_iter().try_for_each(|count| archive.value(count))?;
         [fastest, healing].into_iter().try_for_each(|value| archive.value(value))
     }
-
-    /// Heap memory, bytes.
-    pub(super) fn bytes(&self) -> usize {
-        8 * (self.solved.len() + self.carried.len())
-    }
 }
 
 /// Work of the changes of c where there are steps without a solve.

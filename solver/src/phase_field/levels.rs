@@ -8,10 +8,9 @@ use super::lag::Lag;
 use super::{PhaseField, in_the_norm, is_finite};
 use crate::linear_algebra::active_columns::ActiveColumns;
 use crate::linear_algebra::conjugate_gradients::{Convergence, OnGrid, SolveFailure, solve_on_grids};
-use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::interface::{Interface, fold_all, spread_all};
 use crate::linear_algebra::lane::Lane;
-use crate::linear_algebra::preconditioned::ITERATION_LIMIT;
+use crate::linear_algebra::preconditioned::{ITERATION_LIMIT, PreconditionedSolver};
 use crate::linear_algebra::preconditioner::TOO_MANY;
 use crate::linear_algebra::stencil::Stencil;
 use crate::particles::lattice::Lattice;
@@ -155,7 +154,8 @@ impl PhaseFieldLevels<'_> {
             if let (Some(interface), Some(finer)) = (self.interfaces.get(number), self.levels.get(number + 1)) {
                 add_interface(interface, &finer.field.matrix, &mut matrix);
             }
-            separate_empty(&mut matrix);
+            let (largest, empty) = matrix.bare(NOTHING);
+            empty.into_iter().for_each(|at| matrix.set_diagonal(at, largest)); // without material
             if let Some(preconditioner) = self.levels[number].field.method.preconditioner() {
                 preconditioner.renew(&matrix);
                 preconditioner.forget();
@@ -175,20 +175,8 @@ impl OnLevel<'_> {
     fn equation(&mut self) -> OnGrid<'_> {
         let PhaseField { matrix, load, phase, method, .. } = &mut *self.field;
         let Method::Iterative(solver) = method else { unreachable!("levels have an iterative solver") };
-        let (workspace, preconditioner) = solver.parts();
+        let PreconditionedSolver { workspace, preconditioner } = &mut **solver;
         OnGrid { workspace, matrix, preconditioner, own: self.own, b: load, x: phase }
-    }
-}
-
-/// Gives control points without material a diagonal.
-fn separate_empty(matrix: &mut Stencil) {
-    let grid = matrix.grid;
-    let points = || (0..grid.rows).flat_map(|row| (0..grid.columns).map(move |column| (column, row)));
-    let largest = points().map(|(column, row)| matrix.diagonal(column, row)).fold(0.0, larger);
-    for (column, row) in points() {
-        if matrix.diagonal(column, row) <= NOTHING * largest {
-            matrix.set_diagonal(column, row, largest);
-        }
     }
 }
 

@@ -27,7 +27,7 @@ impl Method {
         match self {
             Self::Direct(_) => Self::Direct(Box::default()),
             Self::Iterative(solver) => {
-                Self::Iterative(Box::new(PreconditionedSolver::new(matrix, solver.preconditioner.is_scaled())))
+                Self::Iterative(Box::new(PreconditionedSolver::new(matrix, solver.preconditioner.is_scaled)))
             }
         }
     }
@@ -58,7 +58,7 @@ impl Method {
                 Ok(Convergence { iterations: 1, error: 0.0 })
             }
             Self::Iterative(solver) => {
-                solver.prepare(matrix);
+                solver.preconditioner.prepare(matrix);
                 solver.solve(matrix, load, x, tolerance, patience)
             }
         }
@@ -75,7 +75,7 @@ impl Method {
     /// Heap memory, bytes.
     pub(crate) fn bytes(&self) -> usize {
         match self {
-            Self::Iterative(solver) => solver.bytes(),
+            Self::Iterative(solver) => solver.workspace.bytes() + solver.preconditioner.bytes(),
             Self::Direct(_) => 0,
         }
     }

@@ -258,8 +258,7 @@ impl PhaseField {
     }
 
     fn diagonal(&self, at: usize) -> f64 {
-        let grid = self.matrix.grid;
-        larger(self.matrix.diagonal(grid.column_of(at), grid.row_of(at)), f64::MIN_POSITIVE)
+        larger(self.matrix.diagonal(at), f64::MIN_POSITIVE)
     }
 }
 

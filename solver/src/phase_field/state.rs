@@ -12,7 +12,7 @@ impl PhaseField {
         let Self { model: _, tolerance: _, matrix, load: _, phase, previous, assembled, method, lag, bounds, counts } =
             self;
         if !assembled.is_empty() {
-            archive.list(matrix.values_mut())?;
+            archive.list(matrix.coefficients_mut())?;
         }
         archive.list(phase)?;
         archive.list(previous)?;

@@ -145,12 +145,6 @@ impl BoundaryEdge {
         self.crossings(d, value).map(move |other| self.place_of(position(other)))
     }
 
-    /// Where coordinate `d` is extreme, or the edge ends: its value there, m.
-    pub(crate) fn ends(&self, d: usize) -> [f64; 2] {
-        let [low, high] = self.bounding_box();
-        [low[d], high[d]]
-    }
-
     /// Where it meets others, between two of its places, and these (s), in order.
     pub(crate) fn places_met(&self, others: &[Self], [from, to]: [f64; 2]) -> Vec<f64> {
         let met = others.iter().flat_map(|other| self.meets(other)).map(|place| self.place_of(place));
@@ -200,6 +194,17 @@ pub(crate) fn bounding_parts(shape: &Shape) -> Vec<(BoundaryEdge, [f64; 2])> {
         }
     }
     parts
+}
+
+/// Middles of equal steps of at most `step` (m) along parts that bound a shape, m, and unit normals into it.
+pub(crate) fn steps_along(parts: &[(BoundaryEdge, [f64; 2])], step: f64) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
+    parts.iter().flat_map(move |(edge, [from, to])| {
+        let count = (edge.length() * (to - from) / step).ceil();
+        (0..count as usize).map(move |i| {
+            let (position, [x, y]) = edge.at(from + (i as f64 + 0.5) / count * (to - from));
+            [position, [-y, x].map(|along| along / x.hypot(y))]
+        })
+    })
 }
 
 /// Positions (m) to the left and to the right of a place on an edge.

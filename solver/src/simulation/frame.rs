@@ -52,8 +52,8 @@ impl Bodies {
 
     pub(super) fn particles(&self) -> usize {
         match self {
-            Self::Total(bodies) => bodies.bodies().iter().map(|body| body.lattice().count()).sum(),
-            Self::Updated(frame) => frame.fields().iter().map(|field| field.points().len()).sum(),
+            Self::Total(bodies) => bodies.bodies.iter().map(|body| body.lattice.count()).sum(),
+            Self::Updated(frame) => frame.fields.iter().map(|field| field.points.len()).sum(),
         }
     }
 
@@ -61,8 +61,8 @@ impl Bodies {
     pub(super) fn control_points(&self) -> usize {
         let massive = |mass: &[f64]| mass.iter().filter(|m| **m > 0.0).count();
         match self {
-            Self::Total(bodies) => bodies.bodies().iter().map(|body| massive(body.mass().row_sums())).sum(),
-            Self::Updated(frame) => frame.fields().iter().map(|field| massive(&field.nodes().mass)).sum(),
+            Self::Total(bodies) => bodies.bodies.iter().map(|body| massive(&body.mass.row_sums)).sum(),
+            Self::Updated(frame) => frame.fields.iter().map(|field| massive(&field.nodes.mass)).sum(),
         }
     }
 }

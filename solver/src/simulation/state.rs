@@ -50,24 +50,11 @@ impl Simulation {
     }
 
     fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self {
-            frame,
-            plan: _,
-            parts,
-            spare: _,
-            warnings,
-            steps,
-            initial,
-            energy_in,
-            warned,
-            failed: _,
-            tolerance: _,
-        } = self;
-        archive.value(steps)?;
-        archive.value(parts)?;
-        either!(frame, body => body.exchange(archive))?;
-        archive.value(warnings)?;
-        [initial, energy_in].into_iter().try_for_each(|energy| archive.value(energy))?;
-        archive.value(warned)
+        archive.value(&mut self.steps)?;
+        archive.value(&mut self.parts)?;
+        either!(&mut self.frame, body => body.exchange(archive))?;
+        archive.value(&mut self.warnings)?;
+        [&mut self.initial, &mut self.energy_in].into_iter().try_for_each(|energy| archive.value(energy))?;
+        archive.value(&mut self.warned)
     }
 }

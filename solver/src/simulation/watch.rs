@@ -1,7 +1,7 @@
 //! The watch over the numbers of a run, and what is said when they break.
 
 use super::Simulation;
-use super::causes::{BARE, CONTACT_NOT_FINITE, INSIDE_OUT, LOST, NOT_FINITE, THROWN, TORN, numbers, what_and_cause};
+use super::causes::{cause, numbers};
 use super::frame::{Bodies, either};
 use crate::contact::gap_potential::TooDeep;
 use crate::contact::impulse::Unconverged;
@@ -150,7 +150,7 @@ impl Simulation {
         if !self.finished() {
             return;
         }
-        let mass: f64 = self.updated_frame().map_or(0.0, |frame| frame.fields().iter().map(|field| field.mass()).sum());
+        let mass: f64 = self.updated_frame().map_or(0.0, |frame| frame.fields.iter().map(|field| field.mass()).sum());
         let [px, py] = sample.momentum;
         let mean = if mass > 0.0 { 0.5 * (px * px + py * py) / mass } else { 0.0 };
         let fracture = sample.fracture.as_ref().map_or(0.0, |fracture| fracture.energy);
@@ -270,34 +270,37 @@ impl Simulation {
             return self.at_worst_point(what, None);
         };
         let what = format!("a material point is inverted, det F = {determinant:.4e}");
-        Breakdown { point: Some(point), ..self.at(position, what, Some(INSIDE_OUT)) }
+        let cause = "the body is turned inside out there: look for extreme loads or velocities, refine the mesh there, or \
+                     halve the safety factor";
+        Breakdown { point: Some(point), ..self.at(position, what, Some(cause)) }
     }
 
     /// A step that could not be taken though the elastic energy of the last one that could is well.
     fn broken(&self, failure: Failure) -> Breakdown {
-        let (what, cause) = what_and_cause(failure, self.tolerance);
+        let (what, cause) = (failure.to_string(), cause(failure, self.tolerance));
         match failure {
-            Failure::Left(place) if !place.iter().all(|x| x.is_finite()) => self.not_finite(LOST),
-            Failure::Left(place) if self.is_far_outside(place) => self.at_worst_point(THROWN, None),
-            Failure::Left(place) if self.is_on_mesh(place) => self.at(place, BARE, Some(TORN)),
-            Failure::PhaseField(SolveFailure::NotFinite) => self.not_finite(NOT_FINITE),
-            Failure::Unconverged(found) if !found.residual.is_finite() => self.not_finite(CONTACT_NOT_FINITE),
+            Failure::Left(place) if !place.iter().all(|x| x.is_finite()) => {
+                self.not_finite("the position of a point is not a number")
+            }
+            Failure::Left(place) if self.is_far_outside(place) => {
+                let what = "a point was thrown out of the mesh, further than the mesh is wide, in one step";
+                self.at_worst_point(what, None)
+            }
+            Failure::Left(place) if self.is_on_mesh(place) => {
+                let what = "a load or condition acts where there is no material any more";
+                let cause = "it has torn off or left behind the points under it; lower or ramp it, end earlier, or use \
+                             frame = \"total\"";
+                self.at(place, what, Some(cause))
+            }
+            Failure::PhaseField(SolveFailure::NotFinite) => self.not_finite(&what),
+            Failure::Unconverged(found) if !found.residual.is_finite() => {
+                self.not_finite("the impulses of contact ran into numbers that are not finite")
+            }
             Failure::Left(place)
             | Failure::Unconverged(Unconverged { place, .. })
             | Failure::TooFast(TooFast { place, .. })
-            | Failure::TooDeep(TooDeep { place, .. }) => self.at(place, what, Some(&cause)),
-            Failure::PhaseField(_)
-            | Failure::SingularMass
-            | Failure::NoStep
-            | Failure::NoPoints(_)
-            | Failure::HoldsNothing(_)
-            | Failure::BareBoundary { .. }
-            | Failure::Contradiction(_)
-            | Failure::LostCondition { .. }
-            | Failure::HeldTwice { .. }
-            | Failure::NoEquilibrium(_)
-            | Failure::Unbalanced(_)
-            | Failure::LostTraction { .. } => self.at_worst_point(&what, Some(&cause)),
+            | Failure::TooDeep(TooDeep { place, .. }) => self.at(place, what, Some(cause)),
+            _ => self.at_worst_point(&what, Some(cause)),
         }
     }
 
@@ -324,13 +327,13 @@ impl Simulation {
 
     /// Whether a position is on the mesh of the bodies that move through it.
     fn is_on_mesh(&self, place: [f64; 2]) -> bool {
-        self.updated_frame().is_some_and(|frame| frame.patch().locate(place).is_some())
+        self.updated_frame().is_some_and(|frame| frame.patch.locate(place).is_some())
     }
 
     /// Whether a position is further out of the mesh than that is wide.
     fn is_far_outside(&self, place: [f64; 2]) -> bool {
         let Some(frame) = self.updated_frame() else { return false };
-        let (low, high) = frame.patch().bounding_box();
+        let (low, high) = frame.patch.bounding_box();
         (0..2).any(|d| (low[d] - place[d]).max(place[d] - high[d]) > high[d] - low[d])
     }
 

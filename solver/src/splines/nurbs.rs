@@ -27,7 +27,7 @@
 //! # Ok::<(), fisura::splines::nurbs::NurbsError>(())
 //! ```
 
-mod check;
+pub(crate) mod check;
 mod construct;
 mod elevate;
 mod error;

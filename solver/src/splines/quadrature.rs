@@ -10,7 +10,7 @@ use crate::scene::Layout;
 pub const MAX_POINTS: usize = 16;
 
 /// Points and weights on [0, 1].
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Rule {
     /// Positions in [0, 1], increasing.
     pub points: Vec<f64>,

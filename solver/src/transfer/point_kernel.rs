@@ -3,7 +3,7 @@
 use crate::linear_algebra::lane::Lane;
 
 /// What the fields are at a batch of points.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct PointValues {
     /// Displacement gradient: `[du_x/dx, du_x/dy, du_y/dx, du_y/dy]`.
     pub gradient: [Lane; 4],

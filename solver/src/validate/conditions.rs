@@ -1,11 +1,12 @@
 //! Checks of the conditions on the sides of the mesh, and of names and motions of all conditions.
 
+use super::edge_conditions::Held;
 use super::findings::{Findings, side_name};
 use super::ground::Ground;
 use super::time;
 use crate::dynamics::body_sample::column_name;
 use crate::dynamics::updated_frame::held_sides::lies_on;
-use crate::scene::{Body, Boundary, Frame, Mass, Mesh, Prescribed, Scene, Side};
+use crate::scene::{Body, Boundary, Frame, Mass, Mesh, Prescribed, Scene};
 use crate::splines::patch::Patch;
 
 /// Relative tolerance of "on the side", of the size of the mesh.
@@ -24,11 +25,10 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
         if ground.is_sound && part(&key, boundary, &scene.mesh, findings) {
             held(&format!("{key}.side"), boundary, scene, findings);
         }
-        for j in 0..i {
-            same_part(&key, j, [boundary, &scene.boundaries[j]], findings);
-            if ground.is_sound {
-                corner(i, j, scene, findings);
-            }
+        let here = Held::on_side(i, boundary, &scene.mesh);
+        for (j, other) in scene.boundaries[..i].iter().enumerate().filter(|_| ground.is_sound) {
+            let join = boundary.side.along() != other.side.along();
+            here.compare(&Held::on_side(j, other, &scene.mesh), join, &key, findings);
         }
     }
     names(scene, findings);
@@ -104,55 +104,6 @@ fn part(key: &str, boundary: &Boundary, mesh: &Mesh, findings: &mut Findings) ->
         return false;
     }
     true
-}
-
-/// Two conditions that prescribe the same component on the same part of a side.
-fn same_part(key: &str, j: usize, [boundary, other]: [&Boundary; 2], findings: &mut Findings) {
-    let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
-    let [[a, b], [c, d]] = [boundary, other].map(|b| b.part.unwrap_or(everywhere));
-    if boundary.side != other.side || a >= d || c >= b {
-        return;
-    }
-    for (component, name) in ["x", "y"].into_iter().enumerate() {
-        if boundary.fix[component] && other.fix[component] {
-            let side = side_name(boundary.side);
-            let message = format!("{name} is already fixed on the {side} side by boundary.{j}");
-            findings.error(format!("{key}.fix"), message, "remove one of the two");
-        }
-    }
-}
-
-/// Sides that meet in a corner and prescribe a component of its motion differently.
-fn corner(i: usize, j: usize, scene: &Scene, findings: &mut Findings) {
-    let pair = [i, j].map(|n| &scene.boundaries[n]);
-    let along = pair.map(|boundary| boundary.side.along());
-    if along[0] == along[1] || !(0..2).all(|n| reaches(pair[n], pair[1 - n].side, &scene.mesh)) {
-        return;
-    }
-    let differ =
-        |d: &usize| pair.iter().all(|b| b.fix[*d]) && pair[0].prescribed.course(*d) != pair[1].prescribed.course(*d);
-    let Some(d) = (0..2).find(differ) else { return };
-    let name = ["x", "y"][d];
-    let [here, there] = pair.map(|boundary| {
-        let unit = if boundary.prescribed.is_displacement() { "m" } else { "m/s" };
-        let varying = if boundary.prescribed.time.is_constant() { "" } else { " times its factor" };
-        (side_name(boundary.side), format!("{} {unit}{varying}", boundary.prescribed.value()[d]))
-    });
-    let message = format!(
-        "the corner of the {} and the {} side would move at {} and at {} (boundary.{j}) in {name}",
-        here.0, there.0, here.1, there.1
-    );
-    let remedy = format!("give both sides the same motion in {name}, or leave {name} free on one of them");
-    findings.error(format!("boundary.{i}.{}", word(&pair[0].prescribed)), message, remedy);
-}
-
-/// Whether a condition reaches the corner at which its side meets another.
-fn reaches(boundary: &Boundary, other: Side, mesh: &Mesh) -> bool {
-    let d = boundary.side.along();
-    let (origin, end) = (mesh.origin()[d], mesh.end()[d]);
-    let tolerance = TOLERANCE * (end - origin);
-    let (_, upper) = other.axis();
-    boundary.part.is_none_or(|[from, to]| if upper { to >= end - tolerance } else { from <= origin + tolerance })
 }
 
 /// Names of conditions are parts of columns.

@@ -10,7 +10,7 @@ use crate::contact::motion::{longest_step, rigid_bodies_that_approach};
 use crate::contact::outline::without_patch;
 use crate::linear_algebra::extremes::larger;
 use crate::particles::spans::smallest_span;
-use crate::scene::edges::{BoundaryEdge, bounding_parts};
+use crate::scene::edges::{bounding_parts, steps_along};
 use crate::scene::{Body, Frame, Kinematics, Scene, Shape, TimeStep};
 
 /// Overlap of two bodies that is not one, in spans: circles are lines of short segments.
@@ -159,7 +159,9 @@ fn overlaps(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) -> bool
     let surfaces: Vec<Surface> = scene.bodies.iter().map(|body| Surface::new(&scene.mesh, body)).collect();
     let boxes: Vec<_> = surfaces.iter().map(Surface::bounding_box).collect();
     let spans: Vec<f64> = scene.bodies.iter().map(|body| ground.span_lengths(&body.shape)[0]).collect();
-    let steps = |(body, span): (&Body, &f64)| steps_along(&without_patch(&body.shape, &scene.mesh), STEP * span);
+    let steps = |(body, span): (&Body, &f64)| {
+        steps_along(&bounding_parts(&without_patch(&body.shape, &scene.mesh)), STEP * span).collect::<Vec<_>>()
+    };
     let steps: Vec<_> = scene.bodies.iter().zip(&spans).map(steps).collect();
     for j in 1..surfaces.len() {
         for i in 0..j {
@@ -182,18 +184,6 @@ fn overlaps(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) -> bool
         }
     }
     true
-}
-
-/// Positions (m) in the middle of steps (m) along the boundary of a shape, and inward unit normals.
-fn steps_along(shape: &Shape, step: f64) -> Vec<[[f64; 2]; 2]> {
-    let of_part = |(edge, [from, to]): (BoundaryEdge, [f64; 2])| {
-        let count = (edge.length() * (to - from) / step).ceil();
-        (0..count as usize).map(move |i| {
-            let (position, [x, y]) = edge.at(from + (i as f64 + 0.5) / count * (to - from));
-            [position, [-y, x].map(|along| along / x.hypot(y))]
-        })
-    };
-    bounding_parts(shape).into_iter().flat_map(of_part).collect()
 }
 
 /// How far what lies `beneath` (m) the boundary of one body reaches into the body inside another, m: the

@@ -32,20 +32,13 @@ pub(super) fn check(key: &str, scene: &Scene, look: &Look<'_>, findings: &mut Fi
         let sides = scene.boundaries.iter().enumerate().map(|(i, boundary)| Held::on_side(i, boundary, &scene.mesh));
         let edges = body.conditions[..j].iter().enumerate().map(|(i, other)| Held::on_edge(i, other, body));
         for there in sides.chain(edges) {
-            if here.shares_component_with(&there) && (here.overlaps(&there) || there.overlaps(&here)) {
-                let message = format!("this motion is prescribed on a part of this edge by {} too", there.who);
-                findings.error(format!("{key}.fix"), message, "remove one of the two");
-            } else if let (Some(d), true) = (here.contradicts(&there), here.meets(&there) || there.meets(&here)) {
-                let message = format!("the end of this edge moves otherwise in {} by {}", ["x", "y"][d], there.who);
-                let remedy = "give both the same motion, or leave a gap of a cell between them";
-                findings.error(format!("{key}.fix"), message, remedy);
-            }
+            here.compare(&there, true, &key, findings);
         }
     }
 }
 
 /// What is prescribed on a part of a curve, and by whom.
-struct Held<'a> {
+pub(super) struct Held<'a> {
     who: String,
     curve: BoundaryEdge,
     part: [f64; 2],
@@ -59,7 +52,7 @@ impl<'a> Held<'a> {
         Self { who: format!("condition.{i}"), curve, part, hold: *hold, prescribed }
     }
 
-    fn on_side(i: usize, boundary: &'a Boundary, mesh: &Mesh) -> Self {
+    pub(super) fn on_side(i: usize, boundary: &'a Boundary, mesh: &Mesh) -> Self {
         let (min, max) = (mesh.origin(), mesh.end());
         let [mut a, mut b] = Shape::Rectangle { min, max }.side(boundary.side).unwrap_or_default();
         if let Some([from, to]) = boundary.part {
@@ -72,6 +65,19 @@ impl<'a> Held<'a> {
             part: [0.0, 1.0],
             hold: Hold::Components(boundary.fix),
             prescribed: &boundary.prescribed,
+        }
+    }
+
+    /// An error of the key if both prescribe the same component on a part, or, where they `join`, other motions
+    /// of the place where they meet.
+    pub(super) fn compare(&self, other: &Self, join: bool, key: &str, findings: &mut Findings) {
+        if self.shares_component_with(other) && (self.overlaps(other) || other.overlaps(self)) {
+            let message = format!("this motion is prescribed on a part of this edge by {} too", other.who);
+            findings.error(format!("{key}.fix"), message, "remove one of the two");
+        } else if let (Some(d), true) = (self.contradicts(other), join && (self.meets(other) || other.meets(self))) {
+            let message = format!("the end of this edge moves otherwise in {} by {}", ["x", "y"][d], other.who);
+            let remedy = "give both the same motion, or leave a gap of a cell between them";
+            findings.error(format!("{key}.fix"), message, remedy);
         }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::linear_algebra::extremes::{larger, smaller};
 use crate::scene::Shape;
-use crate::scene::edges::{beside, bounding_parts};
+use crate::scene::edges::{bounding_parts, steps_along};
 use crate::scene::shape::{Segment, polygon_edges};
 use crate::splines::nurbs::NurbsPatch;
 
@@ -85,18 +85,10 @@ pub(crate) fn narrow_gap(shape: &Shape, reach: f64) -> Option<(Position, f64)> {
     let most = MOST_GAP_LOOKS / complexity(shape).max(1);
     let length: f64 = parts.iter().map(|(edge, [from, to])| (to - from) * edge.length()).sum();
     let step = larger(0.25 * reach, length / most as f64);
-    parts.iter().find_map(|(edge, [from, to])| {
-        let count = ((to - from) * edge.length() / step).ceil().max(1.0) as usize;
-        (0..count).find_map(|i| {
-            let s = from + (to - from) * (i as f64 + 0.5) / count as f64;
-            let (place, tangent) = edge.at(s);
-            let [left, _] = beside(edge, s);
-            let side = if shape.contains(left) { 1.0 } else { -1.0 };
-            let outwards = side / tangent[0].hypot(tangent[1]);
-            let at = |d: f64| [place[0] + d * outwards * tangent[1], place[1] - d * outwards * tangent[0]];
-            let found = (1..=GAP_LOOKS).map(|k| reach * k as f64 / GAP_LOOKS as f64).find(|d| shape.contains(at(*d)));
-            found.map(|d| (place, d))
-        })
+    steps_along(&parts, step).find_map(|[place, inward]| {
+        let at = |depth: f64| [0, 1].map(|d| place[d] - depth * inward[d]);
+        let found = (1..=GAP_LOOKS).map(|k| reach * k as f64 / GAP_LOOKS as f64).find(|d| shape.contains(at(*d)));
+        found.map(|depth| (place, depth))
     })
 }
 
@@ -127,32 +119,16 @@ fn area(points: &[Position]) -> f64 {
     polygon_edges(points).map(|[a, b]| 0.5 * (a[0] * b[1] - a[1] * b[0])).sum()
 }
 
-/// Points on the boundary of a shape, m.
+/// Points on the boundary of a shape (m), without that of what is cut out of it.
 pub(crate) fn outline(shape: &Shape) -> Vec<[f64; 2]> {
-    let n = OUTLINE_INTERVALS;
-    let circle = |[x, y]: [f64; 2], radius: f64| {
-        (0..n).map(move |i| {
-            let (sin, cos) = (std::f64::consts::TAU * i as f64 / n as f64).sin_cos();
-            [x + radius * cos, y + radius * sin]
-        })
-    };
-    let ring = |corners: &[[f64; 2]]| {
-        let edges: Vec<_> = polygon_edges(corners).collect();
-        let n = (MOST_OUTLINE / edges.len().max(1)).clamp(1, n);
-        let along =
-            |[a, b]: [[f64; 2]; 2]| (0..n).map(move |i| [0, 1].map(|d| a[d] + (b[d] - a[d]) * i as f64 / n as f64));
-        edges.into_iter().flat_map(along).collect::<Vec<_>>()
-    };
     match shape {
-        Shape::Patch => Vec::new(),
-        Shape::Rectangle { min, max } => ring(&[*min, [max[0], min[1]], *max, [min[0], max[1]]]),
-        Shape::Polygon { points } => ring(points),
-        Shape::Disk { center, radius } => circle(*center, *radius).collect(),
-        Shape::Annulus { center, inner_radius, outer_radius } => {
-            circle(*center, *inner_radius).chain(circle(*center, *outer_radius)).collect()
-        }
         Shape::Union(shapes) => shapes.iter().flat_map(outline).collect(),
         Shape::Difference { of, .. } => outline(of),
+        _ => {
+            let edges = shape.edges();
+            let n = (MOST_OUTLINE / edges.len().max(1)).clamp(1, OUTLINE_INTERVALS);
+            edges.iter().flat_map(|edge| (0..n).map(|i| edge.at(i as f64 / n as f64).0)).collect()
+        }
     }
 }
 

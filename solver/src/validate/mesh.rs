@@ -3,7 +3,7 @@
 use super::findings::Findings;
 use crate::linear_algebra::extremes::smaller;
 use crate::scene::Mesh;
-use crate::splines::nurbs::{NurbsError, NurbsPatch};
+use crate::splines::nurbs::{NurbsError, NurbsPatch, check};
 
 /// Weights of control points: beyond, sums of them lose the smallest ones, and control points are left
 /// without mass.
@@ -34,7 +34,7 @@ pub(super) fn check(mesh: &Mesh, findings: &mut Findings) -> Option<NurbsPatch> 
         return None;
     }
     let patch = mesh.nurbs()?;
-    let patch = patch.inspect_err(|error| geometry(error, mesh, findings)).ok()?;
+    let patch = patch.inspect_err(|error| geometry(error, findings)).ok()?;
     magnitudes(&patch, findings).then_some(patch)
 }
 
@@ -57,52 +57,31 @@ fn magnitudes(patch: &NurbsPatch, findings: &mut Findings) -> bool {
 }
 
 /// What is wrong with a patch, by key, and what would be right.
-fn geometry(error: &NurbsError, mesh: &Mesh, findings: &mut Findings) {
-    use NurbsError::{ControlPointCount, ControlPointNotFinite, Folded, Weight, WeightCount};
+fn geometry(error: &NurbsError, findings: &mut Findings) {
     let (key, remedy) = match error {
-        ControlPointCount { columns, rows, .. } => (
-            "mesh.control_points",
-            format!("give {} points [x, y], rows of {columns}, first direction fastest", columns * rows),
-        ),
-        ControlPointNotFinite { .. } => ("mesh.control_points", "give finite coordinates".into()),
-        Folded { .. } => (
-            "mesh.control_points",
-            "move or reorder the control points: seen along a row the next row lies to its left, and rows do not cross"
-                .into(),
-        ),
-        WeightCount { expected, .. } => ("mesh.weights", format!("give {expected} weights, one per control point")),
-        Weight { column, row, .. } => {
-            let columns = mesh.knots[0].len() - mesh.degree[0] - 1;
-            let remedy = "give weights above zero; 1 everywhere for a polynomial patch";
-            return findings.error(format!("mesh.weights.{}", row * columns + column), error.to_string(), remedy);
+        NurbsError::ControlPoints(_) => {
+            ("mesh.control_points", "give finite points [x, y], rows of the first direction, as many as functions")
         }
-        _ => ("mesh.knots", "give open knot vectors for these degrees".into()),
+        NurbsError::Folded { .. } => (
+            "mesh.control_points",
+            "move or reorder the control points: seen along a row the next row lies to its left, and rows do not cross",
+        ),
+        NurbsError::Weights(_) => {
+            ("mesh.weights", "give a weight above zero to each control point; 1 everywhere for a polynomial patch")
+        }
+        _ => ("mesh.knots", "give open knot vectors for these degrees"),
     };
     findings.error(key, error.to_string(), remedy);
 }
 
 fn knots(d: usize, degree: usize, knots: &[f64], findings: &mut Findings) {
-    let key = format!("mesh.knots.{d}");
-    let ends = degree + 1;
-    if knots.len() < 2 * ends {
-        let remedy = format!("degree {degree} needs at least {}", 2 * ends);
-        return findings.error(key, format!("{} knots are too few", knots.len()), remedy);
-    }
-    if !findings.finite(key.clone(), knots) {
-        return;
-    }
-    if let Some(i) = knots.windows(2).position(|k| k[0] > k[1]) {
-        return findings.error(key, format!("knot {} is smaller than the one before it", i + 1), "sort the knots");
+    let (key, ends) = (format!("mesh.knots.{d}"), degree + 1);
+    if let Err(error) = check::knots(d, degree, knots) {
+        let remedy =
+            format!("sort the knots; repeat the first and the last {ends} times, others at most {degree} times");
+        return findings.error(key, error.to_string(), remedy);
     }
     let (first, last) = (knots[0], knots[knots.len() - 1]);
-    let open = knots[..ends].iter().all(|k| *k == first) && knots[knots.len() - ends..].iter().all(|k| *k == last);
-    if !open {
-        let remedy = format!("repeat the first and the last knot {ends} times (degree + 1)");
-        return findings.error(key, format!("not open for degree {degree}"), remedy);
-    }
-    if first == last {
-        return findings.error(key, "no span of positive length", "give increasing knots");
-    }
     let (least, most) = EXTENT;
     if !(least..=most).contains(&(last - first)) {
         let message = format!("from {first:e} to {last:e}: an extent outside {least:e} to {most:e}");
@@ -116,14 +95,6 @@ fn knots(d: usize, degree: usize, knots: &[f64], findings: &mut Findings) {
     let shortest = spans.fold(f64::INFINITY, smaller);
     if shortest < SHORTEST * (last - first) {
         let message = format!("a span of {shortest:e} in a mesh of {:e}: too short to be told from none", last - first);
-        return findings.error(key, message, "repeat a knot exactly, or keep the spans alike");
-    }
-    let interior = &knots[ends..knots.len() - ends];
-    let at_end = |k: f64| k == first || k == last;
-    let widest = interior.chunk_by(|a, b| a == b).find(|run| run.len() > degree || at_end(run[0]));
-    if let Some(run) = widest {
-        let times = run.len() + if at_end(run[0]) { ends } else { 0 };
-        let message = format!("the knot {} stands {times} times, so the basis breaks apart", run[0]);
-        findings.error(key, message, format!("repeat an inner knot at most {degree} times, the ends {ends} times"));
+        findings.error(key, message, "repeat a knot exactly, or keep the spans alike");
     }
 }

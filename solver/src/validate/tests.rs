@@ -379,8 +379,8 @@ fn sides_that_meet_agree_in_their_corner() {
         keys
     };
     let driven = side(Side::Left, [true, true], [2.0, 0.0]);
-    assert_eq!(both(&driven, &side(Side::Top, [true, false], [1.0, 0.0])), ["boundary.1.velocity"]);
-    assert_eq!(both(&driven, &side(Side::Bottom, [true, true], [0.0; 2])), ["boundary.1.velocity"]);
+    assert_eq!(both(&driven, &side(Side::Top, [true, false], [1.0, 0.0])), ["boundary.1.fix"]);
+    assert_eq!(both(&driven, &side(Side::Bottom, [true, true], [0.0; 2])), ["boundary.1.fix"]);
     assert!(both(&driven, &side(Side::Top, [true, false], [2.0, 0.0])).is_empty(), "the same velocity");
     assert!(both(&driven, &side(Side::Top, [false, true], [0.0; 2])).is_empty(), "x is prescribed once");
     assert!(both(&driven, &side(Side::Right, [true, true], [-2.0, 0.0])).is_empty(), "these do not meet");

@@ -131,13 +131,13 @@ fn damage_is_the_least_energy_between_its_bounds() {
         scene.mesh = Mesh::uniform([degree; 2], [0.0; 2], [0.01, 0.005], [48, 24]);
         let (simulation, _) = run(&scene);
         let frame = simulation.total_frame().unwrap();
-        let (fracture, lattice) = (frame.fracture.as_ref().unwrap(), frame.lattice());
+        let (fracture, lattice) = (frame.fracture.as_ref().unwrap(), &frame.lattice);
         let model = FractureModel::of(&scene.materials["glass"]).unwrap();
         let mut drive = vec![Lane::ZERO; lattice.batches()];
         for (batch, drive) in drive.iter_mut().enumerate() {
-            let [x, y] = frame.displacement().each_ref().map(|u| lattice.interpolate(batch, u).1);
+            let [x, y] = frame.displacement.each_ref().map(|u| lattice.interpolate(batch, u).1);
             let strain = [x[0], y[1], (x[1] + y[0]) * 0.5];
-            *drive = driving_energy(&frame.moduli(), split, strain).at_least(Lane::ZERO);
+            *drive = driving_energy(&frame.moduli, split, strain).at_least(Lane::ZERO);
         }
         let mut matrix = Stencil::zeros(lattice.patch_grid, lattice.degree);
         add_form(&mut matrix, lattice, Integrand::Mass, &Reaction(&drive, model.reaction_per_energy()));
@@ -190,7 +190,7 @@ fn the_ledger_closes_with_the_square_of_the_step() {
 #[test]
 fn the_step_of_the_star_convex_split_is_that_of_broken_material() {
     let [plain, stiff] = [0.0, 8.0].map(|gamma| Simulation::new(&cracking(Split::StarConvex(gamma), 4e6)).unwrap());
-    let moduli = stiff.total_frame().unwrap().moduli();
+    let moduli = stiff.total_frame().unwrap().moduli;
     let ratio = (9.0 * moduli.volumetric / (moduli.lambda + moduli.mu)).sqrt();
     let steps = [plain, stiff].map(|simulation| simulation.total_frame().unwrap().critical_step());
     assert!((steps[0] / steps[1] / ratio - 1.0).abs() < 1e-9, "{steps:?} for {ratio}");

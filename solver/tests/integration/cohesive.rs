@@ -92,14 +92,14 @@ fn damage_is_stationary_between_its_bounds() {
         scene.mesh = Mesh::uniform([degree; 2], [0.0; 2], [0.01, 0.005], [48, 24]);
         let (simulation, samples) = run(&scene);
         let frame = simulation.total_frame().unwrap();
-        let (fracture, lattice) = (frame.fracture.as_ref().unwrap(), frame.lattice());
+        let (fracture, lattice) = (frame.fracture.as_ref().unwrap(), &frame.lattice);
         let model = fracture.model;
         let c = fracture.field.control_values();
         let mut residual = vec![0.0; lattice.patch_grid.zeros().len()];
         let moduli = ElasticModuli::new(&scene.materials["glass"], Plane::Strain);
         let b = 2.0 * L0;
         lattice.for_each_point(|batch, lane, _, weight| {
-            let [x, y] = frame.displacement().each_ref().map(|u| lattice.interpolate(batch, u).1);
+            let [x, y] = frame.displacement.each_ref().map(|u| lattice.interpolate(batch, u).1);
             let strain = [x[0], y[1], (x[1] + y[0]) * 0.5];
             let drive = driving_energy(&moduli, split, strain).at_least(Lane::ZERO)[lane];
             let (phase, slope) = lattice.interpolate(batch, c);
@@ -107,7 +107,7 @@ fn damage_is_stationary_between_its_bounds() {
             let g = |c: f64| model.degradation(Lane::splat(c))[0];
             let d_g = (g(phase[lane] + step) - g(phase[lane] - step)) / (2.0 * step);
             let surface = 3.0 / std::f64::consts::PI; // Gc/π
-            let functions = frame.lattice().shape_functions(batch);
+            let functions = frame.lattice.shape_functions(batch);
             let grid = lattice.patch_grid;
             let first = c_index(lattice, batch, lane);
             for n in 0..(degree + 1) * (degree + 1) {

@@ -71,7 +71,7 @@ fn the_side_is_where_the_course_puts_it() {
         let moved = |motion, time| {
             let (simulation, _) = run(&driven(motion, time));
             let frame = simulation.total_frame().unwrap();
-            frame.patch().evaluate(&frame.displacement()[0], [0.0, 0.001]).unwrap().value
+            frame.patch.evaluate(&frame.displacement[0], [0.0, 0.001]).unwrap().value
         };
         assert_relative_eq!(moved(Motion::Velocity([1.0, 0.0]), time.clone()), end, max_relative = 1e-3);
         if jumps_nowhere(&time) {
@@ -97,7 +97,7 @@ fn a_part_of_a_side_is_held_and_the_rest_is_free() {
         let lower = |part| Boundary { part, ..Boundary::driven(Side::Left, [true, false], [1.0, 0.0]) };
         let held = |part| {
             scene.boundaries = vec![lower(part)];
-            run(&scene).0.total_frame().unwrap().constraints().held(0)
+            run(&scene).0.total_frame().unwrap().constraints.held(0)
         };
         let mut held = held;
         let all = held(None);

@@ -25,13 +25,13 @@ fn blocks(contact: Option<Contact>) -> Scene {
 fn bodies_pass_through_each_other_without_a_contact_table() {
     let (simulation, samples) = run(&blocks(None));
     let frame = simulation.updated_frame().unwrap();
-    assert!(frame.contact().is_none() && frame.fields().iter().all(|field| field.surface().is_none()));
+    assert!(frame.contact.is_none() && frame.fields.iter().all(|field| field.surface.is_none()));
     assert!(samples.iter().all(|s| s.contact.is_none()));
-    for (field, speed) in frame.fields().iter().zip([1.0, -1.0]) {
-        assert!(field.points().iter().all(|p| (p.velocity[0] - speed).abs() < 1e-12 && p.velocity[1].abs() < 1e-12));
+    for (field, speed) in frame.fields.iter().zip([1.0, -1.0]) {
+        assert!(field.points.iter().all(|p| (p.velocity[0] - speed).abs() < 1e-12 && p.velocity[1].abs() < 1e-12));
     }
     let (simulation, samples) = run(&blocks(Some(Contact { friction: 0.3, ..Contact::default() })));
-    let fields = simulation.updated_frame().unwrap().fields();
+    let fields = &simulation.updated_frame().unwrap().fields;
     assert!(fields[0].momentum()[0] < 0.0 && fields[1].momentum()[0] > 0.0, "they bounce with contact");
     let one = fields[0].mass();
     assert!(samples.iter().all(|s| s.momentum.iter().all(|p| p.abs() < 1e-12 * one)));
@@ -49,7 +49,7 @@ fn bodies_meet_at_any_size() {
         }
         scene.analysis.end_time *= scale;
         let (simulation, _) = run(&scene);
-        let fields = simulation.updated_frame().unwrap().fields();
+        let fields = &simulation.updated_frame().unwrap().fields;
         fields.iter().map(|field| field.momentum()[0] / field.mass()).collect::<Vec<_>>()
     };
     let in_metres = velocities(1.0);
@@ -89,10 +89,10 @@ fn nodal_fields_follow_a_body_with_its_phase_field() {
     scene.bodies.truncate(1);
     scene.bodies[0].cracks = vec![Crack::seed([0.6, 0.25], [0.7, 0.25])];
     let (simulation, samples) = run(&scene);
-    let field = &simulation.updated_frame().unwrap().fields()[0];
-    let (part, whole) = (field.nodes().grid, simulation.updated_frame().unwrap().patch().control_grid());
+    let field = &simulation.updated_frame().unwrap().fields[0];
+    let (part, whole) = (field.nodes.grid, simulation.updated_frame().unwrap().patch.control_grid());
     assert!(part.columns < whole.columns / 3, "{} of {} columns", part.columns, whole.columns);
-    assert!(field.points().iter().all(|p| (p.velocity[0] - 1.0).abs() < 1e-11 && p.velocity[1].abs() < 1e-11));
+    assert!(field.points.iter().all(|p| (p.velocity[0] - 1.0).abs() < 1e-11 && p.velocity[1].abs() < 1e-11));
     let energies: Vec<f64> = samples.iter().map(|s| s.fracture.as_ref().unwrap().energy).collect();
     let spread = energies.iter().map(|e| (e / energies[0] - 1.0).abs()).fold(0.0, larger);
     // 40 spans of flight: the energy of the crack swings with its place in the span and does not drift.

@@ -73,7 +73,7 @@ impl Forcing for Uniform {
 fn errors_of_uniform_stress(scene: &Scene) -> [f64; 2] {
     const STRESS: [[f64; 2]; 2] = [[1e6, 4e5], [4e5, -6e5]];
     let mut frame = TotalFrame::new(scene).unwrap();
-    let grid = frame.lattice().grid;
+    let grid = frame.lattice.grid;
     let zeros = || [grid.zeros(), grid.zeros()];
     frame.start_from(zeros(), zeros(), Arc::new(Uniform(STRESS))).unwrap();
     let material = &scene.materials["glass"];
@@ -86,24 +86,24 @@ fn errors_of_uniform_stress(scene: &Scene) -> [f64; 2] {
     let exact = |component: usize, at: usize| strain(component, 0) * x[at] + strain(component, 1) * y[at];
     let mut forces = frame.forced_loads();
     let mut operator = frame.stiffness_operator();
-    let free = operator.degrees_of_freedom().to_vec();
+    let free = operator.free.clone();
     let linear: Vec<f64> = free.iter().map(|&(at, component)| exact(component, at)).collect();
     let mut image = vec![0.0; free.len()];
     operator.stiffness(&linear, &mut image);
     let loads = || free.iter().map(|&(at, component)| forces[component][at]);
     let left_over = loads().zip(&image).map(|(load, image)| (load - image).abs()).fold(0.0, larger);
     let residual = left_over / loads().map(f64::abs).fold(0.0, larger);
-    if grid.rows > frame.patch().control_grid().rows {
+    if grid.rows > frame.patch.control_grid().rows {
         return [residual, 0.0];
     }
     // A spring in proportion to the mass, which does not act on the exact displacement, holds the free body.
     let shift = young / material.density / 1e-4;
     for (at, component) in free {
-        forces[component][at] += shift * frame.mass().row_sums()[at] * exact(component, at);
+        forces[component][at] += shift * frame.mass.row_sums[at] * exact(component, at);
     }
     let displacement = StaticSolver::new(&frame, shift).unwrap().solve(&forces, &zeros());
     let mut worst = 0.0_f64;
-    frame.lattice().for_each_point(|_, _, position, _| {
+    frame.lattice.for_each_point(|_, _, position, _| {
         let [xx, yy, xy] = frame.elastic_stress_at(&displacement, position);
         for (found, exact) in [(xx, STRESS[0][0]), (yy, STRESS[1][1]), (xy, STRESS[0][1])] {
             worst = larger(worst, (found - exact).abs() / STRESS[0][0]);
@@ -134,13 +134,13 @@ fn the_mass_of_a_body_is_exact_and_no_function_is_parted_by_mistake() {
         let areas = [pi * 0.0039_f64.powi(2), pi * (0.0041_f64.powi(2) - 0.0017_f64.powi(2))];
         for (shape, area) in shapes.iter().zip(areas) {
             let frame = TotalFrame::new(&free_body(2, shape.clone())).unwrap();
-            let mass: f64 = frame.mass().row_sums().iter().sum();
+            let mass: f64 = frame.mass.row_sums.iter().sum();
             approx::assert_relative_eq!(mass, 2450.0 * area, max_relative = 1e-10);
         }
         for shape in [&shapes[0], &shapes[2]] {
             let frame = TotalFrame::new(&free_body(2, shape.clone())).unwrap();
-            let rows = frame.patch().control_grid().rows;
-            assert_eq!(frame.lattice().grid.rows, rows, "copies of control points in {shape:?}");
+            let rows = frame.patch.control_grid().rows;
+            assert_eq!(frame.lattice.grid.rows, rows, "copies of control points in {shape:?}");
         }
     }
 }

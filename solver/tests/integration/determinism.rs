@@ -9,7 +9,7 @@ fn bits(scene: &Scene) -> Vec<u64> {
     assert!(simulation.steps() >= 10, "{} steps", simulation.steps());
     let mut numbers: Vec<f64> = samples.iter().flat_map(|s| s.named_values()).map(|(_, value)| value).collect();
     if let Some(frame) = simulation.total_frame() {
-        numbers.extend(frame.displacement().iter().chain(frame.velocity()).flatten());
+        numbers.extend(frame.displacement.iter().chain(&frame.velocity).flatten());
     }
     simulation.for_each_point(&mut |point| {
         numbers.extend(point.present.iter().chain(&point.velocity).chain(&point.strain));

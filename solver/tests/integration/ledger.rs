@@ -67,11 +67,11 @@ fn terms_equal_their_definitions() {
     scene.bodies[0].angular_velocity = 100.0;
     let (simulation, samples) = run(&scene);
     let (frame, last) = (simulation.total_frame().unwrap(), samples.last().unwrap());
-    let [vx, vy] = frame.velocity();
-    let [ux, uy] = frame.displacement();
+    let [vx, vy] = &frame.velocity;
+    let [ux, uy] = &frame.displacement;
     let (mut kinetic, mut momentum, mut work) = (0.0, [0.0; 2], 0.0);
-    for at in frame.patch().control_grid().indices() {
-        let m = frame.mass().row_sums()[at] * scene.analysis.thickness;
+    for at in frame.patch.control_grid().indices() {
+        let m = frame.mass.row_sums[at] * scene.analysis.thickness;
         kinetic += 0.5 * m * (vx[at] * vx[at] + vy[at] * vy[at]);
         momentum = [momentum[0] + m * vx[at], momentum[1] + m * vy[at]];
         work += m * (ux[at] * scene.analysis.gravity[0] + uy[at] * scene.analysis.gravity[1]);

@@ -93,7 +93,7 @@ fn preconditioned(factor: &IncompleteCholesky, matrix: &Stencil, r: &[f64]) -> (
     let single: Vec<f32> = r.iter().map(|r| *r as f32).collect();
     let mut out = vec![0.0; r.len()];
     let product = factor.apply(matrix.active(), &single, &mut out);
-    (out.iter().map(|z| factor.unit() * f64::from(*z)).collect(), factor.unit() * product)
+    (out.iter().map(|z| factor.unit * f64::from(*z)).collect(), factor.unit * product)
 }
 
 /// Banded matrices on one row of control points, where nothing falls outside the stencil, and on rows that
@@ -109,7 +109,7 @@ fn without_fill_the_factor_is_exact() {
                 let at = row * matrix.row_length() + ahead * grid.stride + grid.index(column, 0);
                 matrix.coefficients_mut()[at] = random.next();
             }
-            matrix.set_diagonal(column, row, 2.0 * degree as f64 + 0.1);
+            matrix.set_diagonal(matrix.grid.index(column, row), 2.0 * degree as f64 + 0.1);
         }
         let r = random.field(grid, 1.0);
         let (x, product) = preconditioned(&IncompleteCholesky::new(&matrix, false), &matrix, &r);
@@ -215,7 +215,7 @@ fn systems_without_a_solution_say_why() {
     let mut broken = b.clone();
     broken[matrix.grid.index(3, 3)] = f64::NAN;
     assert_eq!(solve(&matrix, &broken, 500), SolveFailure::NotFinite);
-    matrix.set_diagonal(4, 4, -1.0);
+    matrix.set_diagonal(matrix.grid.index(4, 4), -1.0);
     assert_eq!(solve(&matrix, &b, 500), SolveFailure::NotPositiveDefinite);
 }
 
@@ -265,12 +265,12 @@ fn a_complete_factor_that_fails_becomes_incomplete() {
     let mut matrix = phase_field_matrix(2, [13, 11], 1.0);
     let mut preconditioner = Preconditioner::new(&matrix, false);
     assert!(preconditioner.improve(&matrix) && preconditioner.is_complete());
-    let sound = matrix.diagonal(4, 4);
-    matrix.set_diagonal(4, 4, -1.0);
+    let sound = matrix.diagonal(matrix.grid.index(4, 4));
+    matrix.set_diagonal(matrix.grid.index(4, 4), -1.0);
     preconditioner.prepare(&matrix);
     assert!(!preconditioner.is_complete() && preconditioner.bytes() > 0);
     assert!(!preconditioner.improve(&matrix), "there is nothing better");
-    matrix.set_diagonal(4, 4, sound);
+    matrix.set_diagonal(matrix.grid.index(4, 4), sound);
     assert!(preconditioner.improve(&matrix) && preconditioner.is_complete());
 }
 
@@ -280,7 +280,7 @@ fn a_complete_factor_that_fails_becomes_incomplete() {
 fn a_factor_whose_pivot_falls_is_shifted() {
     let grid = ControlGrid { columns: 3, rows: 3, stride: 24 };
     let mut matrix = Stencil::zeros(grid, [1, 1]);
-    (0..9).for_each(|n| matrix.set_diagonal(n % 3, n / 3, if n % 2 == 1 { 3.0 } else { 1.0 }));
+    (0..9).for_each(|n| matrix.set_diagonal(matrix.grid.index(n % 3, n / 3), if n % 2 == 1 { 3.0 } else { 1.0 }));
     for (column, row, columns, value) in [(1, 0, -1, -2.0), (1, 0, 1, 2.0), (0, 1, 1, -2.0), (2, 1, -1, -2.0)] {
         let offset = Stencil::offset_index([1, 1], columns, 1);
         let at = row * matrix.row_length() + offset * grid.stride + grid.index(column, 0);
@@ -334,7 +334,7 @@ fn sparse_cholesky_agrees_with_a_dense_one() {
         }
     }
     let mut indefinite = phase_field_matrix(3, [13, 11], 1.0);
-    indefinite.set_diagonal(4, 4, -1.0);
+    indefinite.set_diagonal(indefinite.grid.index(4, 4), -1.0);
     let b = indefinite.grid.zeros();
     assert_eq!(solver.solve(&indefinite, &b, &mut b.clone()), None, "an indefinite matrix is refused");
 }

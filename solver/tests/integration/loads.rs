@@ -32,7 +32,7 @@ fn force_and_moment(scene: &Scene) -> [f64; 3] {
     assert!(validate(scene).is_ok(), "{:?}", validate(scene));
     let simulation = Simulation::new(scene).unwrap();
     if let Some(frame) = simulation.updated_frame() {
-        let nodes = frame.fields()[0].nodes();
+        let nodes = &frame.fields[0].nodes;
         let moving = nodes.grid.indices().filter(|at| nodes.inverse_mass[*at] > 0.0);
         let act = |at: usize| {
             let ([x, y], [fx, fy]) = (nodes.position(at), [0, 1].map(|c| nodes.force[c][at]));

@@ -25,7 +25,7 @@ fn as_patch(scene: &Scene, weight: f64) -> Scene {
 fn difference(a: &Scene, b: &Scene) -> [f64; 2] {
     let ((a, rows), (b, other_rows)) = (run(a), run(b));
     assert!(a.steps() >= 30 && a.steps() == b.steps(), "{} and {} steps", a.steps(), b.steps());
-    let [a, b] = [&a, &b].map(|s| s.total_frame().unwrap().displacement().concat());
+    let [a, b] = [&a, &b].map(|s| s.total_frame().unwrap().displacement.concat());
     let largest = |numbers: &mut dyn Iterator<Item = f64>| numbers.fold(0.0, |m: f64, x| larger(m, x.abs()));
     let displacement = largest(&mut a.iter().zip(&b).map(|(a, b)| a - b)) / largest(&mut a.iter().copied());
     let terms = |s: &Sample| {

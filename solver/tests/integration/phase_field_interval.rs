@@ -60,10 +60,10 @@ fn the_history_is_never_below_the_present_driving_energy() {
     for step in 0..simulation.plan().steps() {
         simulation.step().unwrap();
         let frame = simulation.total_frame().unwrap();
-        let (fracture, lattice) = (frame.fracture.as_ref().unwrap(), frame.lattice());
+        let (fracture, lattice) = (frame.fracture.as_ref().unwrap(), &frame.lattice);
         for (batch, history) in fracture.history.iter().enumerate() {
-            let [(_, x), (_, y)] = frame.displacement().each_ref().map(|u| lattice.interpolate(batch, u));
-            let energy = driving_energy(&frame.moduli(), fracture.model.split, [x[0], y[1], (x[1] + y[0]) * 0.5]);
+            let [(_, x), (_, y)] = frame.displacement.each_ref().map(|u| lattice.interpolate(batch, u));
+            let energy = driving_energy(&frame.moduli, fracture.model.split, [x[0], y[1], (x[1] + y[0]) * 0.5]);
             let below = energy.0.iter().zip(history.0).any(|(energy, history)| history < energy * (1.0 - 1e-9) - 1e-6);
             assert!(!below, "step {step}, batch {batch}: H = {history:?}, psi+ = {energy:?}");
         }

@@ -60,10 +60,10 @@ fn in_the_total_frame_points_and_corners_are_displaced() {
     for corner in &grid.corners {
         // Displacements are far below a span.
         let reference = corner.position.map(|x| (x / 0.25e-3).round() * 0.25e-3);
-        let at = |field| frame.patch().evaluate(field, reference).unwrap().value;
-        let displacement = frame.displacement().each_ref().map(|u| at(u));
+        let at = |field| frame.patch.evaluate(field, reference).unwrap().value;
+        let displacement = frame.displacement.each_ref().map(|u| at(u));
         assert!(close(corner.position, [0, 1].map(|d| reference[d] + displacement[d]), 1e-15), "{corner:?}");
-        assert!(close(corner.velocity, frame.velocity().each_ref().map(|v| at(v)), 1e-9), "{corner:?}");
+        assert!(close(corner.velocity, frame.velocity.each_ref().map(|v| at(v)), 1e-9), "{corner:?}");
         let phase = at(frame.fracture.as_ref().unwrap().field.control_values());
         assert!((corner.phase.unwrap() - phase).abs() < 1e-9, "{corner:?}");
     }

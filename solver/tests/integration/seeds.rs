@@ -26,7 +26,7 @@ fn seeded(h: f64, points: [usize; 2], crack: Crack) -> Scene {
 fn energy(scene: &Scene) -> f64 {
     let [from, to] = scene.bodies[0].cracks[0].points[..] else { panic!("a straight crack") };
     let frame = TotalFrame::new(scene).unwrap();
-    let (energy, _) = frame.fracture.as_ref().unwrap().surface_energy(frame.lattice());
+    let (energy, _) = frame.fracture.as_ref().unwrap().surface_energy(&frame.lattice);
     energy / (3.0 * (to[0] - from[0]).hypot(to[1] - from[1]))
 }
 
@@ -38,7 +38,7 @@ fn largest_phase(scene: &Scene) -> f64 {
     let at = |i: i32| {
         let t = f64::from(i) / 400.0;
         let position = [0, 1].map(|d| (1.0 - t) * from[d] + t * to[d]);
-        frame.patch().evaluate(field, position).unwrap().value
+        frame.patch.evaluate(field, position).unwrap().value
     };
     (0..=400).map(at).fold(f64::NEG_INFINITY, larger)
 }

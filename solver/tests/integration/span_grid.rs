@@ -38,7 +38,7 @@ fn the_mesh_of_a_moving_block_moves_with_it() {
         ("fragments", parted(), 2),
     ] {
         let mut simulation = Simulation::new(&scene).unwrap();
-        let found = simulation.updated_frame().map_or(1, |frame| frame.fields().len());
+        let found = simulation.updated_frame().map_or(1, |frame| frame.fields.len());
         assert!(found >= fields, "{name}: {found} fields");
         for _ in 0..4 {
             let grid = simulation.span_grid();

@@ -12,7 +12,7 @@ fn energy(degree: usize, kinematics: Kinematics, a: [[f64; 2]; 2]) -> f64 {
     let mut scene = elastic_scene(degree, [0.01, 0.008], [5, 4]);
     scene.analysis.kinematics = kinematics;
     let mut frame = TotalFrame::new(&scene).unwrap();
-    let [x, y] = frame.patch().control_positions();
+    let [x, y] = frame.patch.control_positions();
     let component = |i: usize| -> Vec<f64> {
         let moved = |(x, y): (&f64, &f64)| a[i][0] * x + a[i][1] * y - [*x, *y][i];
         x.iter().zip(&y).map(moved).collect()
@@ -95,7 +95,7 @@ fn squeezed(stretch: [f64; 2], safety: f64) -> (TotalFrame, f64) {
     let clamped = |side| Boundary::fixed(side, [true, true]);
     scene.boundaries = [Side::Left, Side::Right, Side::Bottom, Side::Top].map(clamped).to_vec();
     let mut frame = TotalFrame::new(&scene).unwrap();
-    let positions = frame.patch().control_positions();
+    let positions = frame.patch.control_positions();
     let squeezed = [0, 1].map(|d| positions[d].iter().map(|x| (stretch[d] - 1.0) * x).collect::<Vec<_>>());
     let mut random = Random::new(7);
     let velocity = [0, 1].map(|_| positions[0].iter().map(|_| 1e-6 * random.next()).collect::<Vec<_>>());

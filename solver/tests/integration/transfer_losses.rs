@@ -41,7 +41,7 @@ fn loss_per_period(degree: usize, transfer: Transfer) -> f64 {
     // The wave is followed up to the dispersion of lumped mass (0.12 % of the frequency, 3 % of a radian per
     // period) and the noise of points that cross spans, and the work of the forcing is booked.
     let off = |p: &Point| (p.displacement[0] - wave.displacement(p.reference()[0], frame.time())).abs();
-    let off = frame.fields()[0].points().iter().map(off).fold(0.0, larger);
+    let off = frame.fields[0].points.iter().map(off).fold(0.0, larger);
     assert!(off <= 0.04 * 0.08, "{transfer:?}, p = {degree}: {off:e} m off the wave");
     assert!(end.closure.abs() <= 1e-4 * start.kinetic, "{transfer:?}, p = {degree}: closure {:e}", end.closure);
     end.transfer_loss.unwrap() / start.kinetic / 4.0

@@ -31,7 +31,7 @@ fn a_rigid_translation_is_exact_with_every_transfer() {
             scene.analysis = Analysis { transfer, kinematics, end_time: 1.6, ..scene.analysis };
             let what = format!("{transfer:?}, p = {degree}, {kinematics:?}, {layout:?}");
             let (simulation, samples) = run(&scene);
-            for point in simulation.updated_frame().unwrap().fields()[0].points() {
+            for point in &simulation.updated_frame().unwrap().fields[0].points {
                 let off = (point.velocity[0] - velocity[0]).hypot(point.velocity[1] - velocity[1]);
                 assert!(off <= 1e-13 * 0.58, "{what}: velocity off by {off:e}");
                 let strain = point.strain.iter().fold(0.0_f64, |a, e| larger(a, e.abs()));
@@ -178,7 +178,7 @@ fn one_thread_and_two_give_the_same_bits_with_every_transfer() {
                 let mut frame = UpdatedFrame::new(&scene).unwrap();
                 frame.apply_forcing(Arc::new(StandingWave(1e-3)));
                 (0..100).for_each(|_| frame.step(0.01).unwrap());
-                (frame.fields()[0].points().to_vec(), frame.sample(0.01))
+                (frame.fields[0].points.to_vec(), frame.sample(0.01))
             })
         };
         assert_eq!(on(1), on(2), "{transfer:?}");

@@ -59,7 +59,7 @@ fn free_fall_is_exact() {
         let expected = mass * gravity[d] * sample.time;
         assert!((sample.momentum[d] - expected).abs() <= 1e-13 * mass * 150.0, "at t = {}", sample.time);
     }
-    for point in updated(&simulation).fields()[0].points() {
+    for point in &updated(&simulation).fields[0].points {
         for d in 0..2 {
             let fallen = 0.5 * gravity[d] * end.time * end.time;
             assert!((point.displacement[d] - fallen).abs() <= 1e-13 * fallen.abs(), "{}", point.displacement[d]);
@@ -85,8 +85,8 @@ fn momentum_is_kept_to_round_off_and_angular_momentum_by_every_grid() {
         let lost = (sample.angular_momentum - samples[0].angular_momentum).abs();
         assert!(lost <= 2e-3 * samples[0].angular_momentum.abs(), "t = {}: {lost:e}", sample.time);
     }
-    let nodes = updated(&simulation).fields()[0].nodes();
-    let greville = [0, 1].map(|d| updated(&simulation).fields()[0].patch().spaces[d].greville());
+    let nodes = &updated(&simulation).fields[0].nodes;
+    let greville = [0, 1].map(|d| updated(&simulation).fields[0].patch.spaces[d].greville());
     let [mut torque, mut scale] = [0.0; 2];
     for at in nodes.grid.indices() {
         let [x, y] = [greville[0][nodes.grid.column_of(at)], greville[1][nodes.grid.row_of(at)]];
@@ -126,8 +126,8 @@ fn notched_plate_in_both_frames(cells: usize) -> ([f64; 4], f64) {
     fixed.analysis.frame = Frame::Total;
     let (simulation, moving) = run(&moving);
     let (_, fixed) = run(&fixed);
-    let moved = updated(&simulation).fields()[0]
-        .points()
+    let moved = updated(&simulation).fields[0]
+        .points
         .iter()
         .flat_map(|p| p.displacement)
         .fold(0.0_f64, |a, u| larger(a, u.abs()));

@@ -38,13 +38,13 @@ impl MovingBlock {
     /// If a step cannot be taken.
     pub fn new(degree: usize, points: usize, cells: usize, steps: usize) -> Result<Self, BenchError> {
         let (frame, _) = moved(&moving_scene(degree, points, cells, degree), steps)?;
-        let field = &frame.fields()[0];
+        let field = &frame.fields[0];
         Ok(Self {
-            patch: field.patch().clone(),
-            points: field.points().to_vec(),
-            cells: field.cells().clone(),
-            nodes: field.nodes().clone(),
-            moduli: field.moduli(),
+            patch: field.patch.clone(),
+            points: field.points.to_vec(),
+            cells: field.cells.clone(),
+            nodes: field.nodes.clone(),
+            moduli: field.moduli,
         })
     }
 
@@ -160,8 +160,8 @@ fn moved(scene: &Scene, steps: usize) -> Result<(UpdatedFrame, f64), BenchError>
 pub fn minimal<const P: usize>(points: usize, cells: usize) -> Result<(Minimal<P>, f64), BenchError> {
     let scene = moving_scene(P, points, cells, P);
     let (frame, dt) = moved(&scene, 0)?;
-    let field = &frame.fields()[0];
-    Ok((Minimal::new(&scene.mesh, field.points(), field.moduli(), DENSITY), dt))
+    let field = &frame.fields[0];
+    Ok((Minimal::new(&scene.mesh, &field.points, field.moduli, DENSITY), dt))
 }
 
 #[cfg(test)]

@@ -29,7 +29,7 @@ fn share_of(scene: &Scene, run_up: usize, steps: usize) -> Result<Vec<BenchRecor
     let broken = || BenchError::other("the phase field of the plate does not converge");
     let mut frame = TotalFrame::new(scene).map_err(|_| broken())?;
     (0..run_up).try_for_each(|_| frame.step(dt)).map_err(|_| broken())?;
-    let points = frame.lattice().count();
+    let points = frame.lattice.count();
     let record = |name: &str, label: &str| {
         BenchRecord::new(format!("plate/share/{name}"), label, points as f64, "particle-step").with("particles", points)
     };
@@ -44,7 +44,7 @@ fn share_of(scene: &Scene, run_up: usize, steps: usize) -> Result<Vec<BenchRecor
         whole.samples.push(sample);
         let after = frame.fracture.as_ref().ok_or_else(|| BenchError::other("the plate does not fracture"))?;
         before.history.clone_from(&after.history);
-        let (sample, solved) = timed(|| before.solve_phase_field(frame.lattice()));
+        let (sample, solved) = timed(|| before.field.solve(&frame.lattice, &before.history));
         solved.map_err(|_| broken())?;
         solve.samples.push(sample);
         same &= before.field.control_values() == after.field.control_values();

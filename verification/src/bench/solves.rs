@@ -141,7 +141,7 @@ fn jacobi(matrix: &Stencil, b: &[f64], x: &mut [f64], tolerance: f64, limit: usi
     let grid = matrix.grid;
     let mut inverse = grid.zeros();
     for at in grid.indices() {
-        inverse[at] = 1.0 / matrix.diagonal(grid.column_of(at), grid.row_of(at));
+        inverse[at] = 1.0 / matrix.diagonal(at);
     }
     let (mut image, mut direction) = (grid.zeros(), grid.zeros());
     matrix.apply(x, &mut image);

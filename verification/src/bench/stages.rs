@@ -232,10 +232,10 @@ fn sweep_deviation<const P: usize>() -> Result<f64, BenchError> {
     let (mut kernel, _) = minimal::<P>(POINTS, SMALL)?;
     kernel.strain_by(|column, row| [0, 1].map(|d: usize| block.displacement[d][grid.index(column, row)]));
     let (mut difference, mut size) = (0.0, 0.0);
-    for at in grid.indices().filter(|&at| frame.mass().moves(at)) {
+    for at in grid.indices().filter(|&at| frame.mass.moves(at)) {
         let other = kernel.acceleration(grid.column_of(at), grid.row_of(at));
         for d in 0..2 {
-            let own = -forces[d][at] / frame.mass().row_sums()[at];
+            let own = -forces[d][at] / frame.mass.row_sums[at];
             (difference, size) = (larger(difference, (own - other[d]).abs()), larger(size, own.abs()));
         }
     }

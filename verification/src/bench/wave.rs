@@ -148,8 +148,8 @@ impl Wave {
                 let mut frame = TotalFrame::new(&scene).map_err(|_| broken())?;
                 let (displacement, velocity) = (projected(&frame, start)?, projected(&frame, velocity)?);
                 frame.start_with(displacement, velocity).map_err(|_| broken())?;
-                let points = ErrorPoints::new(frame.patch(), &scene.bodies[0]);
-                let (critical, particles) = (frame.critical_step(), frame.lattice().count());
+                let points = ErrorPoints::new(&frame.patch, &scene.bodies[0]);
+                let (critical, particles) = (frame.critical_step(), frame.lattice.count());
                 let bytes = frame.bytes()[0];
                 (Body::Total(Box::new(frame), Box::new(points)), critical, particles, bytes)
             }
@@ -157,7 +157,7 @@ impl Wave {
                 let mut frame = UpdatedFrame::new(&scene).map_err(|_| broken())?;
                 frame.set_initial_velocity(velocity);
                 displace(&mut frame, &scene.bodies[0], start)?;
-                let (critical, particles) = (frame.critical_step(), frame.fields()[0].points().len());
+                let (critical, particles) = (frame.critical_step(), frame.fields[0].points.len());
                 let bytes = frame.bytes()[0];
                 (Body::Updated(Box::new(frame)), critical, particles, bytes)
             }
@@ -200,7 +200,7 @@ impl Wave {
         let (timed, error, closure) = match &self.body {
             Body::Total(frame, points) => {
                 let (timed, end, closure) = self.march(frame, |f| f.step(dt).is_ok(), |f| f.sample(dt), &record.id)?;
-                (timed, self.error_of_field(points, end.displacement()), closure)
+                (timed, self.error_of_field(points, &end.displacement), closure)
             }
             Body::Updated(frame) => {
                 let (timed, end, closure) = self.march(frame, |f| f.step(dt).is_ok(), |f| f.sample(dt), &record.id)?;
@@ -244,7 +244,7 @@ impl Wave {
 
     fn error_at_points(&self, frame: &UpdatedFrame) -> f64 {
         let (mut error, mut size) = (0.0, 0.0);
-        for point in frame.fields()[0].points() {
+        for point in &frame.fields[0].points {
             let exact = self.solution.displacement(point.reference(), END);
             for d in 0..2 {
                 let exact = AMPLITUDE * exact[d];

@@ -40,10 +40,10 @@ struct PatchTest<'a> {
 impl<'a> PatchTest<'a> {
     fn new(frame: &'a TotalFrame) -> Result<Self, StudyError> {
         let mut operator = frame.stiffness_operator();
-        let degrees_of_freedom = operator.degrees_of_freedom().to_vec();
+        let degrees_of_freedom = operator.free.clone();
         let n = degrees_of_freedom.len();
         let mut matrix = dense::matrix(n, |x, out| operator.stiffness(x, out))?;
-        let grid = frame.lattice().grid;
+        let grid = frame.lattice.grid;
         let corner = |column: usize, component: usize| {
             let wanted = (grid.index(column, 0), component);
             degrees_of_freedom.iter().position(|dof| *dof == wanted)
@@ -65,13 +65,13 @@ impl<'a> PatchTest<'a> {
 
     fn largest_stress_error(&self, scene: &CaseScene, stress: [f64; 3]) -> f64 {
         let solution = self.factor.solve(&self.load(scene, stress));
-        let grid = self.frame.lattice().grid;
+        let grid = self.frame.lattice.grid;
         let mut displacement = [grid.zeros(), grid.zeros()];
         for (value, &(at, component)) in solution.iter().zip(&self.degrees_of_freedom) {
             displacement[component][at] = *value;
         }
         let mut worst = 0.0_f64;
-        self.frame.lattice().for_each_point(|_, _, position, _| {
+        self.frame.lattice.for_each_point(|_, _, position, _| {
             let found = self.frame.elastic_stress_at(&displacement, position);
             for (found, exact) in found.into_iter().zip(stress) {
                 worst = larger(worst, (found - exact).abs());
@@ -83,13 +83,13 @@ impl<'a> PatchTest<'a> {
     /// Nodal forces of the tractions `sigma n` on the four sides, zero where rigid motions are held.
     fn load(&self, scene: &CaseScene, [xx, yy, xy]: [f64; 3]) -> DVector<f64> {
         let body = &scene.scene.bodies[0];
-        let grid = self.frame.lattice().grid;
+        let grid = self.frame.lattice.grid;
         let mut forces = [grid.zeros(), grid.zeros()];
         let sides =
             [(Side::Left, [-xx, -xy]), (Side::Right, [xx, xy]), (Side::Bottom, [-xy, -yy]), (Side::Top, [xy, yy])];
         for (side, stress) in sides {
             if body.shape == Shape::Patch {
-                for point in boundary_points(self.frame.patch(), body, side) {
+                for point in boundary_points(&self.frame.patch, body, side) {
                     let [x, y] = point.normal.map(|n| n * point.length);
                     for &(at, value) in &point.functions.values {
                         forces[0][at] += value * (xx * x + xy * y);
@@ -99,7 +99,7 @@ impl<'a> PatchTest<'a> {
                 continue;
             }
             let traction = Traction::on(side, stress, TimeFactor::default());
-            let (space, moves) = ((self.frame.patch(), self.frame.lattice()), |at| self.frame.mass().moves(at));
+            let (space, moves) = ((&self.frame.patch, &self.frame.lattice), |at| self.frame.mass.moves(at));
             let load = NodalLoad::new(space, body, &traction, Kinematics::Small, moves);
             for (at, force) in load.expect("the sides of the body are carried by its points").forces {
                 forces[0][at] += force[0];

@@ -46,9 +46,9 @@ pub fn frequencies(frame: &TotalFrame) -> Result<Vec<f64>, StudyError> {
 /// As [`frequencies`].
 pub fn frequencies_of_consistent_mass(frame: &TotalFrame, density: f64) -> Result<Vec<f64>, StudyError> {
     let mut operator = frame.stiffness_operator();
-    let free = operator.degrees_of_freedom().to_vec();
+    let free = operator.free.clone();
     let n = free.len();
-    let lattice = frame.lattice();
+    let lattice = &frame.lattice;
     let mut stencil = Stencil::zeros(lattice.grid, lattice.degree);
     add_form(&mut stencil, lattice, Integrand::Mass, &Constant(density));
     let mass = matrix(n, |x, out| {

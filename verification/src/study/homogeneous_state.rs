@@ -206,7 +206,7 @@ impl Points<'_> {
             displacement[0][at] = strain * self.greville[grid.column_of(at)];
         }
         fracture.update_history(lattice, 0.0, *moduli, Kinematics::Small, &displacement, forces);
-        let solved = fracture.solve_phase_field(lattice);
+        let solved = fracture.field.solve(lattice, &fracture.history);
         solved.map_err(unsolved)?;
         fracture.degraded_forces(lattice, *moduli, Kinematics::Small, [&displacement[0], &displacement[1]], forces);
         let mut nodal = [grid.zeros(), grid.zeros()];

@@ -155,9 +155,9 @@ impl Flying {
     }
 
     fn centroid(&self, side: Side, component: usize) -> f64 {
-        let field = &self.frame.displacement()[component];
+        let field = &self.frame.displacement[component];
         let (mut moment, mut total) = (0.0, 0.0);
-        for point in self.frame.patch().boundary(side, &Rule::new(Layout::Gauss, self.degree + 2)) {
+        for point in self.frame.patch.boundary(side, &Rule::new(Layout::Gauss, self.degree + 2)) {
             let value: f64 = point.functions.values.iter().map(|&(at, n)| n * field[at]).sum();
             moment += point.length * value * value * point.functions.position[0];
             total += point.length * value * value;

@@ -40,7 +40,7 @@ fn revolution(scene: &Scene) -> Result<[f64; 2], StudyError> {
         Kinematics::Finite => 0.0,
         Kinematics::Small => INCREMENTS as f64 * (cosine - 1.0),
     };
-    let points = frame.fields()[0].points().iter();
+    let points = frame.fields[0].points.iter();
     let off = points.clone().flat_map(|p| [p.strain[0] - left, p.strain[1] - left, p.strain[2]]);
     Ok([largest(off.map(f64::abs)), largest(points.flat_map(|p| p.displacement).map(f64::abs))])
 }

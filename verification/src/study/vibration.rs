@@ -48,7 +48,7 @@ fn vibrate(degree: usize, mass: Mass) -> Result<Energies, StudyError> {
     let broken = || other("no phase field is expected");
     let mut frame = TotalFrame::new(&scene).map_err(|_| broken())?;
     let velocity = projected(&frame, |[x, _]| [(std::f64::consts::PI * x).sin(), 0.0])?;
-    let still = [frame.lattice().grid.zeros(), frame.lattice().grid.zeros()];
+    let still = [frame.lattice.grid.zeros(), frame.lattice.grid.zeros()];
     frame.start_with(still, velocity).map_err(|_| broken())?;
     let dt = SAFETY * frame.critical_step();
     let phase = std::f64::consts::PI * dt;

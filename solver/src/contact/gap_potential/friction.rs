@@ -70,8 +70,8 @@ pub(crate) struct Friction {
     /// In the order of their labels: of the last step, and of this one so far.
     histories: Vec<History>,
     found: Vec<History>,
-    stored: f64,
-    dissipated: f64,
+    pub stored: f64,
+    pub dissipated: f64,
 }
 
 impl Friction {
@@ -130,16 +130,6 @@ impl Friction {
         std::mem::swap(histories, found);
     }
 
-    /// Energy that slip holds, J/m.
-    pub(crate) fn stored(&self) -> f64 {
-        self.stored
-    }
-
-    /// Energy that sliding took so far, J/m.
-    pub(crate) fn dissipated(&self) -> f64 {
-        self.dissipated
-    }
-
     /// Stores or takes up what steps change.
     ///
     /// # Errors
@@ -147,11 +137,6 @@ impl Friction {
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
         archive.value(&mut self.histories)?;
         archive.value(&mut self.dissipated)
-    }
-
-    /// Heap memory, bytes.
-    pub(crate) fn bytes(&self) -> usize {
-        (self.histories.len() + self.found.len()) * size_of::<History>()
     }
 }
 
@@ -207,17 +192,17 @@ mod tests {
         }
         let limit = 0.4 * STIFFNESS * DEPTH;
         assert!((last - limit).abs() < 1e-12 * limit, "{last}");
-        assert!((friction.stored() + friction.dissipated() - work).abs() < 1e-12 * work);
+        assert!((friction.stored + friction.dissipated - work).abs() < 1e-12 * work);
         // 2e-3 m less the elastic slip of mu d.
-        assert!((friction.dissipated() - limit * (2e-3 - 4e-4)).abs() < 1e-12 * work);
+        assert!((friction.dissipated - limit * (2e-3 - 4e-4)).abs() < 1e-12 * work);
         // Where nothing moves nothing changes, not a bit.
-        let (stored, dissipated) = (friction.stored(), friction.dissipated());
+        let (stored, dissipated) = (friction.stored, friction.dissipated);
         assert_eq!(look(&mut friction, 5e-5 * 40.0, 0.0, DEPTH), last);
-        assert_eq!((friction.stored(), friction.dissipated()), (stored, dissipated));
+        assert_eq!((friction.stored, friction.dissipated), (stored, dissipated));
         // What parts dissipates what slip stored.
         look(&mut friction, 5e-5 * 40.0, 0.0, -DEPTH);
-        assert_eq!(friction.stored(), 0.0);
-        assert!((friction.dissipated() - stored - dissipated).abs() < 1e-15);
+        assert_eq!(friction.stored, 0.0);
+        assert!((friction.dissipated - stored - dissipated).abs() < 1e-15);
     }
 
     #[test]
@@ -227,6 +212,6 @@ mod tests {
         assert!(look(&mut friction, 3e-4, 0.0, DEPTH) > 0.0);
         assert!((look(&mut friction, 3.5e-4, 5e-5, DEPTH) - STIFFNESS * 3e-4).abs() < 1e-15);
         assert!(look(&mut friction, 0.0, 0.0, DEPTH).abs() < 1e-15);
-        assert_eq!(friction.dissipated(), 0.0);
+        assert_eq!(friction.dissipated, 0.0);
     }
 }

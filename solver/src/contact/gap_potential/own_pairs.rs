@@ -38,9 +38,4 @@ impl OwnPairs {
     pub(crate) fn may_meet(&self, one: usize, other: usize) -> bool {
         self.may_meet[one * self.arcs + other]
     }
-
-    /// Heap memory, bytes.
-    pub(crate) fn bytes(&self) -> usize {
-        self.may_meet.len()
-    }
 }

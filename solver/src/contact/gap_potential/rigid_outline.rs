@@ -23,9 +23,4 @@ impl RigidOutline {
         let arcs = if self.motion.rests() { self.arcs.clone() } else { self.arcs.iter().map(moved).collect() };
         (Outline::new(arcs, f64::INFINITY), pose)
     }
-
-    /// Heap memory, bytes.
-    pub(crate) fn bytes(&self) -> usize {
-        self.arcs.len() * size_of::<Arc>()
-    }
 }

@@ -41,9 +41,4 @@ impl ThinParts {
     pub(crate) fn is_thin(&self, arc: usize) -> bool {
         fault!("far-faces-count", self.0[arc] => false)
     }
-
-    /// Heap memory, bytes.
-    pub(crate) fn bytes(&self) -> usize {
-        self.0.len()
-    }
 }

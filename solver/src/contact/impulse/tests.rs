@@ -1,5 +1,7 @@
 //! Impulses at constraints that share few control points.
 
+mod three_fields;
+
 use super::*;
 use crate::contact::boundary_functions::BoundaryFunctions;
 

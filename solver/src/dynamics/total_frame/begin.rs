@@ -61,7 +61,7 @@ impl TotalFrame {
             .map(|model| LatticeFracture::new(&patch, &lattice, body, model, material.fracture.as_ref(), &scene.solver))
             .transpose()?;
         let mass = MassMatrix::new(&lattice, material.density, scene.analysis.mass, held)?;
-        if let Some(number) = constraints.conditions().iter().enumerate().position(|(number, condition)| {
+        if let Some(number) = constraints.conditions.iter().enumerate().position(|(number, condition)| {
             let moves = |(at, _, of): (usize, usize, usize)| of == number && mass.moves(at);
             condition.part.is_some() && !constraints.iter().any(moves)
         }) {
@@ -168,7 +168,7 @@ impl TotalFrame {
     /// Motion about the centre of mass: linear in the position, so its control values are exact.
     fn set_initial_velocity(&mut self, body: &Body) {
         let [x, y] = self.control_positions();
-        let mass = self.mass.row_sums();
+        let mass = &self.mass.row_sums;
         let total: f64 = mass.iter().sum();
         let center = [&x, &y].map(|x| mass.iter().zip(x).map(|(m, x)| m * x).sum::<f64>() / total);
         for at in self.grid.indices() {

@@ -30,12 +30,12 @@ use crate::splines::spline::ROUND_OFF;
 #[derive(Debug)]
 pub struct TotalBodies {
     /// Those that deform.
-    bodies: Vec<TotalFrame>,
-    contact: Option<GapPotential>,
+    pub(crate) bodies: Vec<TotalFrame>,
+    pub(crate) contact: Option<GapPotential>,
     /// If they are the levels of one body on a mesh that is refined.
     levels: Option<Levels>,
     /// The mesh of the scene.
-    patch: Patch,
+    pub(crate) patch: Patch,
     thickness: f64,
     /// Names of all bodies in columns, rigid ones last, if they are recorded one by one.
     recorded: Option<Vec<String>>,
@@ -106,8 +106,8 @@ impl TotalBodies {
     fn meet(&mut self, dt: f64) -> Result<(), Failure> {
         let Self { bodies, contact: Some(contact), .. } = self else { return Ok(()) };
         let outlines = bodies.iter().filter_map(TotalFrame::outline).collect();
-        contact.find(outlines, bodies[0].time(), dt).map_err(Failure::TooDeep)?;
-        for pair in contact.forces() {
+        contact.find(outlines, bodies[0].time(), dt)?;
+        for pair in &contact.forces {
             for (side, body) in pair.bodies.into_iter().enumerate() {
                 if let Some(body) = bodies.get_mut(body) {
                     body.push(pair, side);
@@ -134,21 +134,6 @@ impl TotalBodies {
         idle.map(words).collect()
     }
 
-    /// The bodies that deform.
-    pub fn bodies(&self) -> &[TotalFrame] {
-        &self.bodies
-    }
-
-    /// Whether bodies may meet.
-    pub(crate) fn has_contact(&self) -> bool {
-        self.contact.is_some()
-    }
-
-    /// Background patch.
-    pub(crate) fn patch(&self) -> &Patch {
-        &self.patch
-    }
-
     /// Makes ready for steps of `dt` seconds.
     pub(crate) fn prepare(&mut self, dt: f64) {
         match &self.levels {
@@ -160,7 +145,7 @@ impl TotalBodies {
     /// Critical time step, s; infinite if nothing can move.
     pub(crate) fn critical_step(&self) -> f64 {
         if let Some(levels) = &self.levels {
-            return levels.critical_step();
+            return levels.critical_step;
         }
         let steps = self.bodies.iter().map(TotalFrame::critical_step);
         steps.fold(f64::INFINITY, |least, step| if step >= least { least } else { step }) // NaN stays
@@ -205,7 +190,7 @@ impl TotalBodies {
             PairForce { names: pair.map(|i| names[i].clone()), force: sum.map(|f| f * self.thickness) }
         };
         let forces = pairs(bodies.len(), names.len()).map(force).collect();
-        let smallest_gap = Some(contact.forces().iter().map(GapForce::gap).fold(0.0, smaller));
+        let smallest_gap = Some(contact.forces.iter().map(GapForce::gap).fold(0.0, smaller));
         BodySamples { bodies, forces, smallest_gap }
     }
 
@@ -283,15 +268,14 @@ impl TotalBodies {
 
     /// Counters of the phase fields, if there are any.
     pub(crate) fn phase_field_counts(&self) -> Option<PhaseFieldCounts> {
-        let counts = self.bodies.iter().filter_map(|body| body.fracture.as_ref()).map(|f| f.field.counts());
+        let counts = self.bodies.iter().filter_map(|body| body.fracture.as_ref()).map(|f| f.field.counts);
         counts.reduce(PhaseFieldCounts::plus)
     }
 
-    /// Heap memory of mechanics and of the phase fields, bytes.
+    /// Heap memory of mechanics and of the phase fields, without that of boundaries, bytes.
     pub(crate) fn bytes(&self) -> [usize; 2] {
-        let contact = self.contact.as_ref().map_or(0, GapPotential::bytes);
         let of_bodies = self.bodies.iter().map(TotalFrame::bytes);
-        of_bodies.fold([contact, 0], |sum, bytes| [sum[0] + bytes[0], sum[1] + bytes[1]])
+        of_bodies.fold([0; 2], |sum, bytes| [sum[0] + bytes[0], sum[1] + bytes[1]])
     }
 
     /// Stores or takes up what steps change.
@@ -305,9 +289,7 @@ impl TotalBodies {
             contact.exchange(archive)?;
             if archive.is_reader() {
                 let outlines = self.bodies.iter().filter_map(TotalFrame::outline).collect();
-                contact
-                    .find(outlines, self.bodies[0].time(), 0.0)
-                    .map_err(|_| StateError("the state belongs to another scene: its bodies overlap".to_string()))?;
+                contact.find(outlines, self.bodies[0].time(), 0.0).map_err(StateError::of_another_scene)?;
             }
         }
         Ok(())
@@ -338,12 +320,12 @@ fn of_body(scene: &Scene, body: &Body, is_first: bool) -> Result<TotalFrame, Fai
 
 /// What is recorded of a body, by its control points.
 fn sample_body(body: &TotalFrame, sample: &Sample, name: &str) -> BodySample {
-    let masses = body.mass().row_sums();
+    let masses = &body.mass.row_sums;
     let sum = |value: &dyn Fn(usize) -> f64| -> f64 {
         masses.iter().enumerate().filter(|(_, mass)| **mass > 0.0).map(|(at, mass)| mass * value(at)).sum()
     };
     let mass = sum(&|_| 1.0);
-    let (at_rest, displacement, velocity) = (body.control_positions(), body.displacement(), body.velocity());
+    let (at_rest, displacement, velocity) = (body.control_positions(), &body.displacement, &body.velocity);
     let position = |d: usize, at: usize| at_rest[d][at] + displacement[d][at];
     let center = [0, 1].map(|d| sum(&|at| position(d, at)) / mass);
     let mean = [0, 1].map(|d| sum(&|at| velocity[d][at]) / mass);

@@ -29,7 +29,7 @@ const ROUND_OFF: f64 = 1e-9;
 #[derive(Debug, Clone)]
 pub(super) struct EdgeConditions {
     conditions: Vec<EdgeCondition>,
-    multipliers: Multipliers,
+    pub multipliers: Multipliers,
     /// Shares where a side of the mesh prescribes: moment, number of that condition, component, share (m).
     held: Vec<(usize, usize, usize, f64)>,
     reactions: Vec<Reaction>,
@@ -71,7 +71,7 @@ impl EdgeConditions {
         let prescribed: BTreeMap<_, _> = constraints.iter().map(|(at, c, number)| ((at, c), number)).collect();
         let (mut yielding, mut inverse, mut held) = (Vec::new(), Vec::new(), Vec::new());
         for moment in moments {
-            let inverse_mass = |at: usize| 1.0 / mass.row_sums()[at];
+            let inverse_mass = |at: usize| 1.0 / mass.row_sums[at];
             let of = |&(at, c, _): &(usize, usize, f64)| {
                 if prescribed.contains_key(&(at, c)) { 0.0 } else { inverse_mass(at) }
             };
@@ -131,7 +131,7 @@ impl EdgeConditions {
         }
         let part = if time == 0.0 { 0.5 } else { 1.0 }; // of a step, since the velocity at hand
         let excess = |moment: &Moment| {
-            let next = moment.translated(self.reactions[moment.condition].next_velocity());
+            let next = moment.translated(self.reactions[moment.condition].velocity[0]);
             let now = fault!("edge-speed-forgotten", moment.of(velocity) => next);
             let prescribed = if dt > 0.0 { (next - now) / (part * dt) } else { 0.0 };
             moment.of(acceleration) - prescribed
@@ -141,16 +141,11 @@ impl EdgeConditions {
         for (moment, multiplier) in self.multipliers.moments.iter().zip(&multipliers) {
             let force =
                 moment.total.map(|total| -fault!("edge-reaction-reversed", multiplier * total => -multiplier * total));
-            (0..2).for_each(|d| self.reactions[moment.condition].add(d, force[d]));
+            (0..2).for_each(|d| self.reactions[moment.condition].force[0][d] += force[d]);
         }
         for &(row, number, component, share) in &self.held {
             sides.add(number, component, multipliers[row] * share);
         }
-    }
-
-    /// The multipliers.
-    pub(super) fn multipliers(&self) -> &Multipliers {
-        &self.multipliers
     }
 
     /// Whether they prescribe a part of a motion: its components at control points.

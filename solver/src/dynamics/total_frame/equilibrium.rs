@@ -89,7 +89,7 @@ impl TotalFrame {
         self.internal = self.forces_now();
         self.external_minus_internal();
         if let Some(edges) = &self.edges {
-            edges.multipliers().project_forces(&mut self.acceleration);
+            edges.multipliers.project_forces(&mut self.acceleration);
         }
         let residual = free.iter().map(|&(at, component)| self.acceleration[component][at]).collect();
         let inner = self.internal.iter().flatten().map(|f| f.abs());
@@ -101,7 +101,7 @@ impl TotalFrame {
     fn free_motions(&self, free: &[(usize, usize)]) -> Vec<Vec<f64>> {
         let [x, y] = self.control_positions();
         let held: Vec<_> = self.constraints.iter().map(|(at, component, _)| (at, component)).collect();
-        let mass = self.mass.row_sums();
+        let mass = &self.mass.row_sums;
         let total: f64 = mass.iter().sum();
         let center = [&x, &y].map(|x| mass.iter().zip(x).map(|(m, x)| m * x).sum::<f64>() / total);
         let turning = |at: usize, component: usize| [center[1] - y[at], x[at] - center[0]][component];
@@ -120,7 +120,7 @@ impl TotalFrame {
 
     /// Takes the forces away that would accelerate these motions.
     fn balance(&self, free: &[(usize, usize)], motions: &[Vec<f64>], residual: &mut [f64]) {
-        let mass = self.mass.row_sums();
+        let mass = &self.mass.row_sums;
         for motion in motions {
             let inertia: f64 = free.iter().zip(motion).map(|(&(at, _), v)| mass[at] * v * v).sum();
             let acceleration = dot(motion, residual) / inertia;

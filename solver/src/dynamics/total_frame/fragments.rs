@@ -29,7 +29,7 @@ impl TotalFrame {
         for batch in 0..self.lattice.batches() {
             let (area, phase) = (self.lattice.weights_of(batch), self.lattice.value(batch, &control_values));
             for lane in (0..area.0.len()).filter(|&lane| area[lane] > 0.0) {
-                let [column, row] = self.lattice.span_of(batch, lane);
+                let [column, row] = self.lattice.first_of(batch, lane);
                 let content = spans.entry([number(0, column), number(1, row)]).or_default();
                 content.area += area[lane];
                 content.phase += area[lane] * phase[lane];

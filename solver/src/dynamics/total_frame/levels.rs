@@ -61,7 +61,7 @@ pub(super) struct Levels {
     /// Right-hand sides of the phase field by the points of each level.
     phase_loads: Vec<Vec<f64>>,
     /// Critical step of the finest level, s.
-    critical_step: f64,
+    pub critical_step: f64,
     /// Steps since the phase field was looked at.
     since: usize,
     /// What refinement added to the energies, J/m.
@@ -109,16 +109,15 @@ impl Levels {
             };
             frame.loads.iter().map(field).collect::<Vec<_>>()
         };
-        let phase_load = |frame: &TotalFrame| {
-            frame.fracture.as_ref().map_or_else(Vec::new, |fracture| fracture.field.load().to_vec())
-        };
+        let phase_load =
+            |frame: &TotalFrame| frame.fracture.as_ref().map_or_else(Vec::new, |fracture| fracture.field.load.clone());
         let mut levels = Self {
             regions: Regions::new(&frames),
             insertions: frames.windows(2).map(insertion).collect(),
             interfaces: Vec::new(),
             functions: Vec::new(),
             own: frames.iter().map(|frame| ActiveColumns::all(frame.lattice.patch_grid)).collect(),
-            masses: frames.iter().map(|frame| frame.mass.row_sums().to_vec()).collect(),
+            masses: frames.iter().map(|frame| frame.mass.row_sums.clone()).collect(),
             loads: frames.iter().map(dense).collect(),
             constraints: frames.iter().map(|frame| frame.constraints.clone()).collect(),
             phase_loads: frames.iter().map(phase_load).collect(),
@@ -140,11 +139,6 @@ impl Levels {
         }
         levels.accelerate(&mut frames);
         Ok((frames, levels))
-    }
-
-    /// Critical time step, s.
-    pub(super) fn critical_step(&self) -> f64 {
-        self.critical_step
     }
 
     /// Refines where the crack has come.

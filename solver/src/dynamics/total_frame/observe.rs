@@ -5,20 +5,15 @@ use std::sync::Arc;
 use super::TotalFrame;
 use super::forced::LatticeForcing;
 use super::probe::ProbePlace;
-use crate::dynamics::constraints::Constraints;
 use crate::dynamics::energy::{ConditionSample, FractureSample, ProbeSample, Sample};
 use crate::dynamics::forcing::Forcing;
-use crate::dynamics::mass::MassMatrix;
 use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::lane::Lane;
 use crate::material::degradation::stress_at;
-use crate::material::elasticity::ElasticModuli;
 use crate::material::hencky::{growth, hencky_strain, symmetric};
 use crate::output::inspection::InvertedPoint;
-use crate::particles::lattice::Lattice;
 use crate::phase_field::fracture::{CrackTip, LatticeFracture, crack_tip, most_broken};
-use crate::scene::{Kinematics, Shape};
-use crate::splines::patch::Patch;
+use crate::scene::Kinematics;
 
 impl TotalFrame {
     /// Position (m) of the fastest control point, and its speed (m/s), infinite if it is no number.
@@ -114,12 +109,10 @@ impl TotalFrame {
     /// The point that is turned inside out furthest, if one is; small strains know none.
     pub(crate) fn inverted_point(&self) -> Option<InvertedPoint> {
         let (mut worst, mut point) = (None, 0);
-        self.lattice.for_each_point(|batch, lane, position, _| {
-            let functions = self.lattice.functions_at(&self.patch, batch, lane);
-            let [x, y] = self.displacement.each_ref().map(|u| functions.interpolate(u));
-            let (_, determinant) = self.strain([x.gradient, y.gradient]);
+        self.for_each_gradient(None, |batch, lane, gradient| {
+            let (_, determinant) = self.strain(gradient);
             if determinant <= 0.0 {
-                let inverted = InvertedPoint { point, position, determinant };
+                let inverted = InvertedPoint { point, position: self.lattice.position(batch, lane), determinant };
                 worst = Some(worst.map_or(inverted, |worst: InvertedPoint| worst.worse(inverted)));
             }
             point += 1;
@@ -146,7 +139,7 @@ impl TotalFrame {
 
     /// Mass, kg, and momentum, kg m/s, so many seconds ago with the present accelerations.
     pub(super) fn mass_and_momentum(&self, ago: f64) -> (f64, [f64; 2]) {
-        let masses = self.mass.row_sums();
+        let masses = &self.mass.row_sums;
         let momentum = |d: usize| {
             let moving = masses.iter().zip(&self.velocity[d]).zip(&self.acceleration[d]);
             self.thickness * moving.map(|((m, v), a)| m * (v - ago * a)).sum::<f64>()
@@ -167,46 +160,6 @@ impl TotalFrame {
     /// Time, s.
     pub fn time(&self) -> f64 {
         self.time
-    }
-
-    /// Material points.
-    pub fn lattice(&self) -> &Lattice {
-        &self.lattice
-    }
-
-    /// Region of the body.
-    pub fn shape(&self) -> &Shape {
-        &self.shape
-    }
-
-    /// Background patch.
-    pub fn patch(&self) -> &Patch {
-        &self.patch
-    }
-
-    /// Moduli.
-    pub fn moduli(&self) -> ElasticModuli {
-        self.moduli
-    }
-
-    /// Control values of the displacement, m.
-    pub fn displacement(&self) -> &VectorField {
-        &self.displacement
-    }
-
-    /// Control values of the velocity, m/s.
-    pub fn velocity(&self) -> &VectorField {
-        &self.velocity
-    }
-
-    /// Mass per unit thickness.
-    pub fn mass(&self) -> &MassMatrix {
-        &self.mass
-    }
-
-    /// Sides with prescribed velocity.
-    pub fn constraints(&self) -> &Constraints {
-        &self.constraints
     }
 
     /// Nodal forces (N/m) of the loads that vary in space, at the present time.

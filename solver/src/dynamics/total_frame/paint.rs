@@ -13,7 +13,7 @@ const SAMPLES: f64 = 3.0;
 impl TotalFrame {
     /// Phase field, if there is one, and largest principal stress (Pa) on a raster; NaN outside the body.
     pub(crate) fn paint(&self, raster: &Raster) -> (Option<Vec<f64>>, Vec<f64>) {
-        let places = places_of_pixels(self.patch(), raster);
+        let places = places_of_pixels(&self.patch, raster);
         let outside = [f64::NAN; 2];
         let values: Vec<[f64; 2]> =
             places.par_iter().map(|place| place.map_or(outside, |place| self.values_at(place).0)).collect();

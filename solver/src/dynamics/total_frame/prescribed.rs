@@ -23,7 +23,7 @@ pub(super) struct Reactions(Vec<Reaction>);
 
 impl Reactions {
     pub(super) fn new(constraints: &Constraints) -> Self {
-        let conditions = constraints.conditions();
+        let conditions = &constraints.conditions;
         let wanted = conditions.iter().any(|c| c.name.is_some() || !c.prescribed.is_at_rest());
         Self(vec![Reaction::default(); if wanted { conditions.len() } else { 0 }])
     }
@@ -35,7 +35,7 @@ impl Reactions {
         }
         self.0.iter_mut().for_each(Reaction::begin);
         for (at, component, number) in constraints.iter() {
-            self.0[number].add(component, -net[component][at]);
+            self.0[number].force[0][component] += -net[component][at];
         }
     }
 
@@ -52,18 +52,18 @@ impl Reactions {
         if self.0.is_empty() {
             return constraints.remove(acceleration);
         }
-        for (reaction, condition) in self.0.iter_mut().zip(constraints.conditions()) {
+        for (reaction, condition) in self.0.iter_mut().zip(&constraints.conditions) {
             let next = condition.prescribed.mean_velocity(time, dt);
             reaction.drive(fault!("driven-side-lags", next => next.map(|v| 0.5 * v)));
         }
         let part = if time == 0.0 { 0.5 } else { 1.0 }; // of a step, since the velocity at hand
         for (at, component, number) in constraints.iter() {
-            let change = self.0[number].next_velocity()[component] - velocity[component][at];
+            let change = self.0[number].velocity[0][component] - velocity[component][at];
             acceleration[component][at] = if dt > 0.0 { change / (part * dt) } else { 0.0 };
         }
         let inertia = [0, 1].map(|component| mass.product(&acceleration[component]));
         for (at, component, number) in constraints.iter() {
-            self.0[number].add(component, fault!("reaction-without-inertia", inertia[component](at) => 0.0));
+            self.0[number].force[0][component] += fault!("reaction-without-inertia", inertia[component](at) => 0.0);
         }
     }
 
@@ -75,7 +75,7 @@ impl Reactions {
     /// Adds a component of a force (N/m) to the reaction to a condition.
     pub(super) fn add(&mut self, number: usize, component: usize, force: f64) {
         if let Some(reaction) = self.0.get_mut(number) {
-            reaction.add(component, force);
+            reaction.force[0][component] += force;
         }
     }
 
@@ -84,7 +84,7 @@ impl Reactions {
         let sample = |(reaction, condition): (&Reaction, &Boundary)| {
             Some(reaction.sample(condition.name.as_deref()?, condition.fix))
         };
-        self.0.iter().zip(constraints.conditions()).filter_map(sample).collect()
+        self.0.iter().zip(&constraints.conditions).filter_map(sample).collect()
     }
 
     /// Stores or takes up all of them.

@@ -10,40 +10,7 @@ impl TotalFrame {
     /// # Errors
     /// Bytes of another scene, and loads that only the program knows.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self {
-            patch: _,
-            grid: _,
-            counts_fragments: _,
-            lattice: _,
-            moduli: _,
-            kinematics: _,
-            shape: _,
-            thickness: _,
-            gravity: _,
-            loads,
-            forced,
-            constraints: _,
-            edges,
-            boundary: _,
-            mass: _,
-            in_use: _,
-            displacement,
-            velocity,
-            acceleration,
-            internal,
-            strip_forces: _,
-            fracture,
-            probes: _,
-            domains: _,
-            density: _,
-            crack_start,
-            elastic_energy,
-            ledger,
-            time,
-            time_step: _,
-            reactions,
-            judged_stiffening,
-        } = self;
+        let Self { loads, forced, edges, displacement, velocity, acceleration, internal, fracture, .. } = self;
         if forced.is_some() {
             return Err(StateError("loads that only the program knows cannot be stored".to_string()));
         }
@@ -52,28 +19,17 @@ impl TotalFrame {
             field.iter_mut().try_for_each(|component| archive.list(component))?;
         }
         loads.iter_mut().for_each(|load| load.follow(displacement));
-        if let Some(LatticeFracture {
-            model: _,
-            history,
-            phase,
-            excess,
-            lag_work,
-            field,
-            iterations,
-            intact_energy: _,
-            relative: _,
-            driven: _,
-        }) = fracture
-        {
+        if let Some(LatticeFracture { history, phase, excess, lag_work, field, iterations, .. }) = fracture {
             [history, phase, excess].into_iter().try_for_each(|values| archive.list(values))?;
             field.exchange(archive)?;
             lag_work.as_mut().map_or(Ok(()), |work| work.exchange(archive))?;
             archive.value(iterations)?;
         }
-        [elastic_energy, time, judged_stiffening].into_iter().try_for_each(|value| archive.value(value))?;
-        archive.value(crack_start)?;
-        reactions.exchange(archive)?;
+        let values = [&mut self.elastic_energy, &mut self.time, &mut self.judged_stiffening];
+        values.into_iter().try_for_each(|value| archive.value(value))?;
+        archive.value(&mut self.crack_start)?;
+        self.reactions.exchange(archive)?;
         edges.as_mut().map_or(Ok(()), |edges| edges.exchange(archive))?;
-        archive.value(ledger)
+        archive.value(&mut self.ledger)
     }
 }

@@ -24,11 +24,6 @@ impl TotalFrame {
         self.grid.indices().flat_map(|at| [(at, 0), (at, 1)]).filter(moving).collect()
     }
 
-    /// Room for [`Self::elastic_forces`].
-    pub(crate) fn strip_forces(&self) -> StripForces {
-        self.strip_forces.clone()
-    }
-
     /// Internal forces (N/m) of the undamaged body under a displacement (m), linear in it.
     pub(crate) fn elastic_forces(&self, displacement: &VectorField, strips: &mut StripForces, out: &mut VectorField) {
         elastic_forces(&self.lattice, self.moduli, Kinematics::Small, displacement, strips, out);
@@ -52,18 +47,14 @@ impl TotalFrame {
 #[derive(Debug)]
 pub struct LatticeStiffness<'a> {
     frame: &'a TotalFrame,
-    free: Vec<(usize, usize)>,
+    /// Control points and components that move.
+    pub free: Vec<(usize, usize)>,
     pub(super) field: VectorField,
     image: VectorField,
     strips: StripForces,
 }
 
 impl LatticeStiffness<'_> {
-    /// Control point and component of each degree of freedom.
-    pub fn degrees_of_freedom(&self) -> &[(usize, usize)] {
-        &self.free
-    }
-
     /// Writes a motion of the free degrees of freedom into [`Self::field`].
     pub(super) fn unpack(&mut self, x: &[f64]) {
         for (&(at, component), x) in self.free.iter().zip(x) {
@@ -83,7 +74,7 @@ impl LatticeStiffness<'_> {
     /// to round-off grows from iteration to iteration (Gould, Hribar and Nocedal 2001).
     pub(super) fn pack_forces(&self, forces: &mut VectorField, out: &mut [f64]) {
         if let Some(edges) = &self.frame.edges {
-            edges.multipliers().project_forces(forces);
+            edges.multipliers.project_forces(forces);
         }
         self.pack(forces, out);
     }
@@ -114,7 +105,7 @@ impl StiffnessOperator for LatticeStiffness<'_> {
         let mut quotient = self.field.clone();
         self.frame.mass.divide(&mut quotient);
         if let Some(edges) = &self.frame.edges {
-            edges.multipliers().project(&mut quotient);
+            edges.multipliers.project(&mut quotient);
         }
         self.pack(&quotient, out);
     }

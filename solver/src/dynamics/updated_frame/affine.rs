@@ -91,11 +91,6 @@ impl AffineVelocities {
     pub(super) fn view(&self) -> AffineView<'_> {
         AffineView { fit: self.fit, greville: &self.greville }
     }
-
-    /// Heap memory, bytes.
-    pub(crate) fn bytes(&self) -> usize {
-        self.gradients.len() * size_of::<Gradient>() + 8 * (self.greville[0].len() + self.greville[1].len())
-    }
 }
 
 /// How the velocity gradients of points follow from control values.

@@ -11,18 +11,18 @@ impl UpdatedFrame {
     /// The bodies of these names; `samples` are those of the fields, a metre thick, and `dt` is the step in
     /// use.
     pub(super) fn sample_bodies(&self, names: &[String], samples: &[Sample], dt: f64) -> BodySamples {
-        let deformable = (0..self.fields.len()).map(|field| self.body_of(field) + 1).max().unwrap_or_default();
+        let deformable = (0..self.fields.len()).map(|field| self.bodies[field] + 1).max().unwrap_or_default();
         let body = |body: usize| {
-            let of_body = self.fields.iter().zip(samples).enumerate().filter(|(at, _)| self.body_of(*at) == body);
+            let of_body = self.fields.iter().zip(samples).enumerate().filter(|(at, _)| self.bodies[*at] == body);
             let (fields, samples): (Vec<_>, Vec<_>) = of_body.map(|(_, pair)| pair).unzip();
             sample_body(&names[body], &fields, &samples, self.thickness)
         };
         let bodies = (0..deformable).map(body).collect();
-        if !self.has_contact() {
+        if self.contact.is_none() {
             return BodySamples { bodies, ..BodySamples::default() };
         }
         // Rigid bodies are counted after the fields there, after the other bodies in the names.
-        let named = |at: usize| if at < samples.len() { self.body_of(at) } else { at - samples.len() + deformable };
+        let named = |at: usize| if at < samples.len() { self.bodies[at] } else { at - samples.len() + deformable };
         let forces = self.contact_forces(dt);
         let force = |pair: [usize; 2]| {
             let sum = forces.iter().fold([0.0; 2], |sum, force| {
@@ -35,7 +35,7 @@ impl UpdatedFrame {
             });
             PairForce { names: pair.map(|i| names[i].clone()), force: sum.map(|f| f * self.thickness) }
         };
-        let gaps = self.contact.iter().flat_map(|contact| contact.constraints().iter().map(|c| c.gap));
+        let gaps = self.contact.iter().flat_map(|contact| contact.constraints.iter().map(|c| c.gap));
         let smallest_gap = Some(gaps.reduce(smaller).unwrap_or(f64::NAN));
         BodySamples { bodies, forces: pairs(deformable, names.len()).map(force).collect(), smallest_gap }
     }

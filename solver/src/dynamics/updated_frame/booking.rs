@@ -19,7 +19,7 @@ impl DiscreteField {
         let weight = self.gravity[0] * end_of_step.momentum[0] + self.gravity[1] * end_of_step.momentum[1];
         let powers = self.loads.iter().map(|load| load.powers(self.time, dt));
         let [before, now] = powers.fold([0.0; 2], |[a, b], [before, now]| [a + before, b + now]);
-        let [forced_before, forced_now] = self.forcing.as_ref().map_or([0.0; 2], |forcing| forcing.powers());
+        let [forced_before, forced_now] = self.forcing.as_ref().map_or([0.0; 2], |forcing| forcing.powers);
         let driven = self.edges.as_mut().map_or(0.0, |edges| edges.work(dt));
         let on_points = now + forced_now + weight - self.stress_work / dt;
         self.losses.kinetic += end_of_step.kinetic - self.nodes.kinetic_energy(&self.nodes.arrived);

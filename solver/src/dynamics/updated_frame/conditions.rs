@@ -22,7 +22,7 @@ impl DiscreteField {
     pub(super) fn accelerate(&mut self) {
         self.nodes.accelerate();
         if let Some(mut edges) = self.edges.take() {
-            let kick = self.kick_length(edges.step());
+            let kick = self.kick_length(edges.step);
             edges.accelerate(&mut self.nodes.acceleration, kick);
             self.edges = Some(edges);
         }

@@ -70,12 +70,6 @@ impl FictitiousMaterial {
             }
         });
     }
-
-    /// Heap memory, bytes.
-    pub fn bytes(&self) -> usize {
-        let functions: usize = self.directions.iter().map(|d| d.value.len()).sum();
-        functions * size_of::<[f64; 2 * MAX_ORDER + 1]>()
-    }
 }
 
 impl Integrals {

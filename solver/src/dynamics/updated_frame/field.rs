@@ -36,22 +36,26 @@ use crate::splines::patch::Patch;
 pub struct DiscreteField {
     pub(super) whole: Arc<Patch>,
     /// The part of the patch the nodal fields cover, and its first control column and row.
-    pub(super) patch: Patch,
+    pub patch: Patch,
     pub(super) origin: [usize; 2],
     /// Sides that hold it at rest.
     pub(super) sides: Vec<HeldSide>,
     /// Conditions on edges that move with it.
     pub(super) edges: Option<Box<HeldEdges>>,
-    pub(super) moduli: ElasticModuli,
+    /// Moduli.
+    pub moduli: ElasticModuli,
     /// Logarithmic change of volume over that of area: less than 1 in plane stress, where the thickness
     /// follows.
     pub(super) thickening: f64,
     pub(super) density: f64,
     pub(super) thickness: f64,
     pub(super) gravity: [f64; 2],
-    pub(super) points: Vec<Point>,
-    pub(super) cells: Cells,
-    pub(super) nodes: NodalFields,
+    /// Material points, sorted by span.
+    pub points: Vec<Point>,
+    /// Order of the points.
+    pub cells: Cells,
+    /// Nodal fields at the present whole step.
+    pub nodes: NodalFields,
     pub(super) velocity_transfer: VelocityTransfer,
     /// Velocity gradients of the points, for the transfers that need them.
     pub(super) affine: Option<AffineVelocities>,
@@ -60,7 +64,7 @@ pub struct DiscreteField {
     pub(super) loads: Vec<SurfaceLoad>,
     pub(super) forcing: Option<PointForcing>,
     /// The boundary, if the body may meet others.
-    pub(super) surface: Option<Surface>,
+    pub surface: Option<Surface>,
     /// The phase field, if the material fractures.
     pub fracture: Option<PointwiseFracture>,
     pub(super) crack_start: Option<[f64; 2]>,
@@ -151,7 +155,7 @@ impl DiscreteField {
             grid: *grid,
             inverse_mass,
             density: *density,
-            fixed: nodes.fixed(),
+            fixed: &nodes.fixed,
             velocity,
             acceleration,
         }

@@ -15,26 +15,12 @@ use super::pieces::{Pieces, SEPARATED, spacing};
 use crate::contact::crack_faces::{Faces, Place};
 use crate::dynamics::failure::Failure;
 use crate::particles::points::Point;
+use crate::phase_field::PhaseFieldCounts;
 
 /// Steps between checks of the bodies: a crack grows by a few spans in them.
-const CHECK_INTERVAL: usize = 16;
+pub(super) const CHECK_INTERVAL: usize = 16;
 /// Area of the smallest fragment, in squares of a span: fewer points have no field of their own.
 const LEAST_SPANS: f64 = 9.0;
-
-/// When the bodies are checked for fragments.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Fragments {
-    /// Steps since the bodies were checked.
-    pub(super) steps: usize,
-}
-
-impl Fragments {
-    /// Whether a check is due, one step later.
-    pub(super) fn is_due(&mut self) -> bool {
-        self.steps = (self.steps + 1) % CHECK_INTERVAL;
-        self.steps == 0
-    }
-}
 
 impl DiscreteField {
     /// Its fragments, if it is cracked through; the first takes over its ledger and what its solver counted.
@@ -44,14 +30,14 @@ impl DiscreteField {
         };
         let least_area = LEAST_SPANS * self.patch.shortest_span().powi(2);
         let Some(pieces) = Pieces::find(&self.points, &fracture.points, least_area) else { return Ok(None) };
-        let parts = (0..pieces.count()).map(|piece| self.fragment(&pieces, piece, dt));
+        let parts = (0..pieces.count).map(|piece| self.fragment(&pieces, piece, dt));
         let mut parts = parts.collect::<Result<Vec<_>, _>>()?;
         let kept: f64 = parts.iter().map(|part| part.stored(dt)).sum();
         let first = &mut parts[0];
         (first.ledger, first.losses) = (self.ledger, self.losses);
         first.losses.partition += fault!("partition-unbooked", self.stored(dt) - kept => 0.0);
         first.ledger.transfer_loss = first.losses.sum();
-        first.fracture.iter_mut().for_each(|part| part.field.count_also(fracture.field.counts()));
+        first.fracture.iter_mut().for_each(|part| part.field.counts = part.field.counts.plus(fracture.field.counts));
         Ok(Some(parts))
     }
 
@@ -63,7 +49,7 @@ impl DiscreteField {
         part.edges.iter_mut().for_each(|edges| edges.keep(piece == 0, own));
         part.hold_sides();
         if let Some(fracture) = &mut part.fracture {
-            fracture.field.forget_counts();
+            fracture.field.counts = PhaseFieldCounts::default();
         }
         part.crack_and_stress()?;
         part.rebuild_grid()?;

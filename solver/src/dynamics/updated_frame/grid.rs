@@ -36,7 +36,8 @@ pub struct NodalFields {
     pub sums: Vec<[f64; 5]>,
     /// What the sides hold.
     constraints: Constraints,
-    fixed: BTreeSet<(usize, usize)>,
+    /// Control points and components that sides hold.
+    pub fixed: BTreeSet<(usize, usize)>,
 }
 
 /// What the grid holds at the end of a step, per unit thickness.
@@ -188,19 +189,9 @@ impl NodalFields {
         field
     }
 
-    /// Control points and components whose velocity is prescribed.
-    pub fn fixed(&self) -> &BTreeSet<(usize, usize)> {
-        &self.fixed
-    }
-
     /// Components that accelerate: control point and component.
     pub fn free(&self) -> Vec<(usize, usize)> {
         let moving = |&(at, c): &(usize, usize)| self.inverse_mass[at] > 0.0 && !self.fixed.contains(&(at, c));
         self.grid.indices().flat_map(|at| [(at, 0), (at, 1)]).filter(moving).collect()
-    }
-
-    /// Heap memory, bytes.
-    pub fn bytes(&self) -> usize {
-        8 * (15 * self.grid.len() + self.greville[0].len() + self.greville[1].len())
     }
 }

@@ -35,7 +35,7 @@ pub(super) struct HeldEdges {
     /// On the present grid; `None` if nothing there can yield.
     multipliers: Option<Multipliers>,
     /// Length of the steps, s; zero before the first one.
-    step: f64,
+    pub step: f64,
 }
 
 /// A condition, and the points of its edge.
@@ -63,7 +63,7 @@ impl HeldEdges {
             let parts = smooth_parts(patch, body, &condition.edge);
             let on_material = parts.iter().flatten().filter(|point| body.shape.contains(point.inner));
             let points: Vec<_> = on_material.map(|point| (Follower::new(point.position), *point)).collect();
-            let reaction = Reaction::at_start(condition.prescribed.start()[1]);
+            let reaction = Reaction { velocity: [condition.prescribed.start()[1]; 2], ..Reaction::default() };
             (!points.is_empty()).then(|| HeldEdge {
                 alone: is_alone(body, &conditions, number),
                 space: multiplier_space(patch, &parts),
@@ -82,7 +82,7 @@ impl HeldEdges {
         for edge in &mut self.edges {
             edge.points.retain(|(place, _)| keeps(place.position));
             if !keeps_work {
-                edge.reaction.forget_work();
+                edge.reaction.work = 0.0;
             }
         }
     }
@@ -105,11 +105,6 @@ impl HeldEdges {
         }
     }
 
-    /// Length of the steps, s; zero before the first one.
-    pub(super) fn step(&self) -> f64 {
-        self.step
-    }
-
     /// Goes on to a whole step at `time`, to be followed by a step of `dt` seconds.
     pub(super) fn go_on(&mut self, [time, dt]: [f64; 2]) {
         self.step = dt;
@@ -123,7 +118,7 @@ impl HeldEdges {
     pub(super) fn impose(&mut self, nodes: &mut NodalFields) -> ImposedEnergy {
         self.edges.iter_mut().for_each(|edge| edge.struck = 0.0);
         let Self { edges, multipliers: Some(multipliers), .. } = self else { return ImposedEnergy::default() };
-        let last = |moment: &Moment| moment.translated(edges[moment.condition].reaction.last_velocity());
+        let last = |moment: &Moment| moment.translated(edges[moment.condition].reaction.velocity[1]);
         let impulses = multipliers.of_excess(|moment| moment.of(&nodes.velocity) - last(moment));
         let mut energy = ImposedEnergy::default();
         let mut sums = vec![[0.0; 2]; edges.len()];
@@ -134,7 +129,7 @@ impl HeldEdges {
         }
         multipliers.yield_to(&impulses, &mut nodes.velocity);
         for (edge, sum) in edges.iter_mut().zip(sums) {
-            edge.struck = dot(sum, edge.reaction.last_velocity());
+            edge.struck = dot(sum, edge.reaction.velocity[1]);
             energy.work += edge.struck;
         }
         energy
@@ -147,7 +142,7 @@ impl HeldEdges {
         let Some(multipliers) = &self.multipliers else { return forces };
         let change = |moment: &Moment| {
             let reaction = &self.edges[moment.condition].reaction;
-            let [next, last] = [reaction.next_velocity(), reaction.last_velocity()];
+            let [next, last] = reaction.velocity;
             let begun = fault!("held-edge-without-course", kick > 0.0 => false);
             moment.translated([0, 1].map(|d| if begun { (next[d] - last[d]) / kick } else { 0.0 }))
         };
@@ -163,7 +158,7 @@ impl HeldEdges {
     pub(super) fn accelerate(&mut self, acceleration: &mut VectorField, kick: f64) {
         let forces = self.hold(acceleration, kick);
         for (edge, force) in self.edges.iter_mut().zip(forces) {
-            edge.reaction.set(force);
+            edge.reaction.force[0] = force;
         }
     }
 
@@ -178,7 +173,7 @@ impl HeldEdges {
     /// without that of impacts.
     pub(super) fn work(&mut self, dt: f64) -> f64 {
         let book = |edge: &mut HeldEdge| {
-            edge.reaction.add_work(edge.struck);
+            edge.reaction.work += edge.struck;
             edge.reaction.book(dt)
         };
         fault!("held-edge-works-twice", 1.0 => 2.0) * self.edges.iter_mut().map(book).sum::<f64>()
@@ -189,7 +184,7 @@ impl HeldEdges {
     pub(super) fn samples(&self, forces: &[[f64; 2]]) -> Vec<ConditionSample> {
         let named = |(HeldEdge { condition, reaction, .. }, force): (&HeldEdge, &[f64; 2])| {
             let mut reaction = *reaction;
-            (0..2).for_each(|d| reaction.add(d, force[d]));
+            (0..2).for_each(|d| reaction.force[0][d] += force[d]);
             Some(reaction.sample(condition.name.as_deref()?, condition.components()))
         };
         self.edges.iter().zip(forces).filter_map(named).collect()
@@ -206,11 +201,6 @@ impl HeldEdges {
             edge.points.iter_mut().try_for_each(|(place, _)| archive.value(&mut place.position))?;
         }
         Ok(())
-    }
-
-    /// Heap memory, bytes.
-    pub(super) fn bytes(&self) -> usize {
-        self.edges.iter().map(|edge| edge.points.len() * size_of::<(Follower, SurfacePoint)>()).sum()
     }
 
     /// The multipliers that can move something on the present grid.
@@ -233,7 +223,7 @@ impl HeldEdges {
             moments.extend(moments_of(number, edge.condition.hold, multipliers, points).map_err(lost)?);
         }
         let inverse = |moment: &Moment| -> Option<Vec<f64>> {
-            let free = |(at, component)| if nodes.fixed().contains(&(at, component)) { 0.0 } else { 1.0 };
+            let free = |(at, component)| if nodes.fixed.contains(&(at, component)) { 0.0 } else { 1.0 };
             let of = |&(at, component, _): &(usize, usize, f64)| free((at, component)) * nodes.inverse_mass[at];
             let inverse: Vec<f64> = moment.shares.iter().map(of).collect();
             moment.yields(&inverse, |at| nodes.inverse_mass[at]).then_some(inverse)

@@ -46,7 +46,7 @@ use serde::{Deserialize, Serialize};
 
 /// Parts of the transfer loss so far, J per metre of thickness.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct TransferLosses {
+pub(crate) struct TransferLosses {
     /// Fall of the kinetic energy from the grid at the end of a step to the next one.
     pub kinetic: f64,
     /// Work of the forces on the difference between the motion of the points and that of the grid.
@@ -63,29 +63,7 @@ pub struct TransferLosses {
 
 impl TransferLosses {
     /// All of it.
-    pub fn sum(&self) -> f64 {
+    pub(super) fn sum(&self) -> f64 {
         self.kinetic + self.power + self.imposed + self.phase_field + self.partition + self.step
-    }
-
-    pub(super) fn plus(self, other: Self) -> Self {
-        Self {
-            kinetic: self.kinetic + other.kinetic,
-            power: self.power + other.power,
-            imposed: self.imposed + other.imposed,
-            phase_field: self.phase_field + other.phase_field,
-            partition: self.partition + other.partition,
-            step: self.step + other.step,
-        }
-    }
-
-    pub(super) fn times(self, factor: f64) -> Self {
-        Self {
-            kinetic: factor * self.kinetic,
-            power: factor * self.power,
-            imposed: factor * self.imposed,
-            phase_field: factor * self.phase_field,
-            partition: factor * self.partition,
-            step: factor * self.step,
-        }
     }
 }

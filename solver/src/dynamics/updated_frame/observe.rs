@@ -3,21 +3,17 @@
 use std::borrow::Cow;
 
 use super::field::DiscreteField;
-use super::grid::NodalFields;
-use super::losses::TransferLosses;
 use super::{UpdatedFrame, views};
+use crate::contact::ContactLedger;
 use crate::contact::impulse::{ContactForce, Push, Unconverged};
-use crate::contact::{ContactLedger, ContactSolver, Surface};
 use crate::dynamics::energy::{ContactSample, FractureSample, Sample};
 use crate::linear_algebra::control_grid::VectorField;
 use crate::material::degradation::BROKEN;
-use crate::material::elasticity::ElasticModuli;
 use crate::material::hencky::{Gradient, growth};
 use crate::output::inspection::InvertedPoint;
-use crate::particles::points::{Cells, Point};
+use crate::particles::points::Point;
 use crate::phase_field::PhaseFieldCounts;
 use crate::phase_field::fracture::{BrokenPoint, CrackTip, crack_tip, most_broken};
-use crate::splines::patch::Patch;
 
 impl UpdatedFrame {
     /// Remembers where cracks begin that were not there at the start.
@@ -50,29 +46,9 @@ impl UpdatedFrame {
         Sample { bodies: recorded, fragments: self.fragment_areas(), ..sample.for_thickness(self.thickness) }
     }
 
-    /// The fields of the bodies that deform: of those that are whole, or of fragments.
-    pub fn fields(&self) -> &[DiscreteField] {
-        &self.fields
-    }
-
-    /// Contact of the bodies, if the scene declares it.
-    pub fn contact(&self) -> Option<&ContactSolver> {
-        self.contact.as_ref()
-    }
-
-    /// Whether bodies may meet.
-    pub fn has_contact(&self) -> bool {
-        self.contact.is_some()
-    }
-
     /// Time, s.
     pub fn time(&self) -> f64 {
         self.fields.first().map_or(0.0, |field| field.time)
-    }
-
-    /// Background patch.
-    pub fn patch(&self) -> &Patch {
-        &self.patch
     }
 
     /// Forces of contact now; `dt` is the step in use.
@@ -97,12 +73,7 @@ impl UpdatedFrame {
 
     /// Where the boundary of a body was without material first, m, if one ever was.
     pub fn opened_boundary(&self) -> Option<[f64; 2]> {
-        self.fields.iter().find_map(|field| field.surface()?.opened())
-    }
-
-    /// Thickness, m.
-    pub fn thickness(&self) -> f64 {
-        self.thickness
+        self.fields.iter().find_map(|field| field.surface.as_ref()?.opened)
     }
 
     /// Elastic energy, J.
@@ -112,19 +83,13 @@ impl UpdatedFrame {
 
     /// External work so far, J.
     pub fn external_work(&self) -> f64 {
-        let rigid = self.contact.as_ref().map_or(0.0, |contact| contact.ledger().work) * self.thickness;
+        let rigid = self.contact.as_ref().map_or(0.0, |contact| contact.ledger.work) * self.thickness;
         self.fields.iter().map(|field| field.external_work()).sum::<f64>() + rigid
-    }
-
-    /// Parts of the transfer loss so far, J.
-    pub fn transfer_losses(&self) -> TransferLosses {
-        let sum = |sum: TransferLosses, field: &DiscreteField| sum.plus(field.losses.times(self.thickness));
-        self.fields.iter().fold(TransferLosses::default(), sum)
     }
 
     /// Counters of the phase fields, if there are any.
     pub(crate) fn phase_field_counts(&self) -> Option<PhaseFieldCounts> {
-        let counts = self.fields.iter().filter_map(|field| field.fracture.as_ref()).map(|f| f.field.counts());
+        let counts = self.fields.iter().filter_map(|field| field.fracture.as_ref()).map(|f| f.field.counts);
         counts.reduce(PhaseFieldCounts::plus)
     }
 
@@ -139,13 +104,10 @@ impl UpdatedFrame {
         self.fields.iter().filter_map(DiscreteField::inverted_point).reduce(InvertedPoint::worse)
     }
 
-    /// Heap memory of mechanics and of the phase fields, bytes.
+    /// Heap memory of mechanics and of the phase fields, without that of boundaries, bytes.
     pub fn bytes(&self) -> [usize; 2] {
-        let contact = self.contact.as_ref().map_or(0, |contact| contact.bytes());
-        self.fields
-            .iter()
-            .map(|field| field.bytes())
-            .fold([contact, 0], |sum, bytes| [sum[0] + bytes[0], sum[1] + bytes[1]])
+        let of_fields = self.fields.iter().map(DiscreteField::bytes);
+        of_fields.fold([0; 2], |sum, bytes| [sum[0] + bytes[0], sum[1] + bytes[1]])
     }
 }
 
@@ -156,7 +118,7 @@ impl DiscreteField {
         let nodes = &self.nodes;
         let mut acceleration = Cow::Borrowed(acceleration);
         let conditions = self.edges.as_ref().map(|edges| {
-            let forces = edges.hold(acceleration.to_mut(), self.kick_length(edges.step()));
+            let forces = edges.hold(acceleration.to_mut(), self.kick_length(edges.step));
             edges.samples(&forces)
         });
         let half = if self.at_start { 0.0 } else { fault!("half-step-velocity", 0.5 * dt => 0.0) };
@@ -260,11 +222,6 @@ impl DiscreteField {
         (speed, self.nodes.position(at))
     }
 
-    /// Boundary, if the body may meet others.
-    pub fn surface(&self) -> Option<&Surface> {
-        self.surface.as_ref()
-    }
-
     /// Time, s.
     pub fn time(&self) -> f64 {
         self.time
@@ -275,44 +232,12 @@ impl DiscreteField {
         (!self.at_start).then_some(self.last_step)
     }
 
-    /// Material points, sorted by span.
-    pub fn points(&self) -> &[Point] {
-        &self.points
-    }
-
-    /// Order of the points.
-    pub fn cells(&self) -> &Cells {
-        &self.cells
-    }
-
-    /// Nodal fields at the present whole step.
-    pub fn nodes(&self) -> &NodalFields {
-        &self.nodes
-    }
-
-    /// The part of the background patch the nodal fields cover.
-    pub fn patch(&self) -> &Patch {
-        &self.patch
-    }
-
-    /// Moduli.
-    pub fn moduli(&self) -> ElasticModuli {
-        self.moduli
-    }
-
-    /// Heap memory of mechanics and of the phase field, bytes.
+    /// Heap memory of mechanics and of the phase field, without that of boundaries, bytes.
     pub fn bytes(&self) -> [usize; 2] {
         let points = self.points.len() * size_of::<Point>() + self.cells.bytes();
-        let loads: usize = self.loads.iter().map(|load| load.bytes()).sum();
-        let affine = self.affine.as_ref().map_or(0, |affine| affine.bytes());
-        let deformation = self.deformation.as_ref().map_or(0, |gradients| gradients.len() * size_of::<Gradient>());
-        let forcing = self.forcing.as_ref().map_or(0, |forcing| forcing.bytes());
-        let surface = self.surface.as_ref().map_or(0, |surface| surface.bytes());
-        let edges = self.edges.as_ref().map_or(0, |edges| edges.bytes());
-        let points = points + edges + affine + deformation + forcing + surface;
-        [
-            points + self.nodes.bytes() + self.velocity_transfer.bytes() + loads,
-            self.fracture.as_ref().map_or(0, |f| f.bytes()),
-        ]
+        let gradients = self.affine.iter().map(|affine| &affine.gradients).chain(&self.deformation);
+        let gradients: usize = gradients.map(|gradients| gradients.len() * size_of::<Gradient>()).sum();
+        let nodes = 8 * 21 * self.nodes.grid.len(); // fields of NodalFields and VelocityTransfer
+        [points + gradients + nodes, self.fracture.as_ref().map_or(0, |fracture| fracture.bytes())]
     }
 }

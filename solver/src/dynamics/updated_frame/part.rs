@@ -75,7 +75,7 @@ impl DiscreteField {
         let constraints = constraints(&self.whole, &patch, origin, &self.sides);
         let shift = [0, 1].map(|d| origin[d] as isize - self.origin[d] as isize);
         self.nodes = NodalFields::new(&patch, constraints);
-        self.velocity_transfer = VelocityTransfer::new(patch.control_grid(), self.velocity_transfer.transfer());
+        self.velocity_transfer = VelocityTransfer::new(patch.control_grid(), self.velocity_transfer.transfer);
         if let Some(affine) = &mut self.affine {
             affine.follow(&patch);
         }

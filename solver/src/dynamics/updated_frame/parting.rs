@@ -2,14 +2,14 @@
 
 use super::UpdatedFrame;
 use super::field::DiscreteField;
-use super::fragments::Fragments;
+use super::fragments::CHECK_INTERVAL;
 use crate::checkpoint::{Archive, StateError};
 use crate::dynamics::failure::Failure;
 
 impl UpdatedFrame {
     /// Area of every field (m²), if bodies may fall into fragments.
     pub(super) fn fragment_areas(&self) -> Option<Vec<f64>> {
-        let area = |field: &DiscreteField| field.points().iter().map(|point| point.volume).sum();
+        let area = |field: &DiscreteField| field.points.iter().map(|point| point.volume).sum();
         self.fragments.as_ref().map(|_| self.fields.iter().map(area).collect())
     }
 
@@ -18,7 +18,11 @@ impl UpdatedFrame {
     /// # Errors
     /// If the phase field of a fragment does not converge.
     pub(super) fn part_if_due(&mut self, dt: f64) -> Result<(), Failure> {
-        if self.fragments.as_mut().is_some_and(Fragments::is_due) { self.part_bodies(dt) } else { Ok(()) }
+        let is_due = self.fragments.as_mut().is_some_and(|steps| {
+            *steps = (*steps + 1) % CHECK_INTERVAL;
+            *steps == 0
+        });
+        if is_due { self.part_bodies(dt) } else { Ok(()) }
     }
 
     /// Parts the bodies whose seeds cut them through.
@@ -45,7 +49,7 @@ impl UpdatedFrame {
             fields.extend(parts.drain(1..));
             fields.splice(at..=at, parts);
             if let Some(contact) = contact {
-                contact.forget_impulses();
+                contact.last.clear(); // the bodies are numbered anew
             }
         }
         Ok(())
@@ -59,7 +63,7 @@ impl UpdatedFrame {
         let Self { fields, bodies, fragments: Some(fragments), .. } = self else { return Ok(()) };
         let count = bodies.iter().copied().max().map_or(0, |last| last + 1);
         let mut points: Vec<usize> = fields.iter().map(|field| field.points.len()).collect();
-        archive.value(&mut fragments.steps)?;
+        archive.value(fragments)?;
         archive.value(bodies)?;
         archive.value(&mut points)?;
         if archive.is_reader() {
@@ -68,9 +72,7 @@ impl UpdatedFrame {
             let known = bodies.iter().all(|body| *body < count);
             let kept = points.iter().try_fold(0_usize, |sum, count| sum.checked_add(*count)) == Some(all);
             if !first || !known || !kept || points.len() != bodies.len() || points.contains(&0) {
-                return Err(StateError(
-                    "the state belongs to another scene: its fragments are not fragments of these bodies".into(),
-                ));
+                return Err(StateError::of_another_scene("its fragments are not fragments of these bodies"));
             }
             let whole = fields[..count].to_vec();
             *fields = bodies.iter().map(|body| whole[*body].clone()).collect();

@@ -18,7 +18,7 @@ pub(super) struct Pieces<'a> {
     neighbours: Neighbours,
     step: f64,
     of: Vec<Option<u32>>,
-    count: u32,
+    pub count: u32,
 }
 
 impl<'a> Pieces<'a> {
@@ -50,11 +50,6 @@ impl<'a> Pieces<'a> {
         }
         pieces.grow();
         Some(pieces)
-    }
-
-    /// How many there are.
-    pub(super) fn count(&self) -> u32 {
-        self.count
     }
 
     /// Piece of a point.

@@ -99,7 +99,7 @@ impl PointwiseFracture {
     /// If there is no solution to the tolerance.
     pub(crate) fn solve(&mut self, patch: &Patch, cells: &Cells, points: &[Point]) -> Result<(), SolveFailure> {
         assemble(self.field.system_mut(), patch, cells, points, &self.points, &self.model, &self.fictitious);
-        let first = self.field.counts().solves == 0;
+        let first = self.field.counts.solves == 0;
         let result = if first { self.field.initialise_system() } else { self.field.solve_system() };
         self.iterations = result?.iterations;
         Ok(())
@@ -144,7 +144,7 @@ impl PointwiseFracture {
 
     /// Heap memory, bytes.
     pub(crate) fn bytes(&self) -> usize {
-        self.points.len() * size_of::<FracturePoint>() + self.field.bytes() + self.fictitious.bytes()
+        self.points.len() * size_of::<FracturePoint>() + self.field.bytes()
     }
 }
 

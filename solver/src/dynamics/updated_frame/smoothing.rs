@@ -6,8 +6,7 @@
 
 use super::transfer::walk;
 use super::windows::{Reach, Window, scatter, side_by_side};
-use crate::linear_algebra::control_grid::ControlGrid;
-use crate::linear_algebra::control_grid::VectorField;
+use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
 use crate::linear_algebra::lane::{Vectorised, dispatch, each};
 use crate::particles::points::{Cell, Cells, Point};
 use crate::splines::patch::Patch;

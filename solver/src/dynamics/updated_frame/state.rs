@@ -4,7 +4,6 @@
 use super::field::DiscreteField;
 use super::{UpdatedFrame, views};
 use crate::checkpoint::{Archive, StateError};
-use crate::contact::motion::TooFast;
 use crate::dynamics::failure::Failure;
 
 impl UpdatedFrame {
@@ -20,15 +19,11 @@ impl UpdatedFrame {
             contact.exchange(archive)?;
             if archive.is_reader() && fields[0].time() > 0.0 {
                 contact.move_rigid(fields[0].time());
-                contact.find(&views(fields)).map_err(too_fast)?;
+                contact.find(&views(fields)).map_err(StateError::of_another_scene)?;
             }
         }
         Ok(())
     }
-}
-
-fn too_fast(fast: TooFast) -> StateError {
-    StateError(format!("the state belongs to another scene: bodies move {:.3} spans in a step", fast.spans))
 }
 
 impl DiscreteField {
@@ -39,59 +34,27 @@ impl DiscreteField {
             let inside =
                 (0..2).all(|d| spans[d].start < spans[d].end && spans[d].end <= self.whole.spaces[d].spans().len());
             if !inside {
-                return Err(StateError("the state belongs to another scene: a body lies outside the mesh".to_string()));
+                return Err(StateError::of_another_scene("a body lies outside the mesh"));
             }
             self.occupy(&spans);
         }
         self.exchange_points(archive)?;
         if archive.is_reader() {
-            self.rebuild().map_err(|failure| {
-                StateError(format!("the state belongs to another scene: its grid cannot be rebuilt ({failure:?})"))
-            })?;
+            self.rebuild().map_err(StateError::of_another_scene)?;
         }
         self.exchange_sums(archive)
     }
 
     /// What points and surfaces carry.
     fn exchange_points(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self {
-            whole: _,
-            patch: _,
-            origin: _,
-            sides,
-            edges,
-            moduli: _,
-            thickening: _,
-            density: _,
-            thickness: _,
-            gravity: _,
-            points,
-            cells: _,
-            nodes: _,
-            velocity_transfer: _,
-            affine,
-            deformation,
-            loads,
-            forcing,
-            surface,
-            fracture,
-            crack_start,
-            elastic_energy: _, // see exchange_sums
-            stress_work: _,
-            ledger: _,
-            losses: _,
-            time,
-            at_start,
-            last_step,
-            travelled: _,
-        } = self;
+        let Self { sides, edges, points, affine, deformation, loads, forcing, surface, fracture, .. } = self;
         if forcing.is_some() {
             return Err(StateError("loads that only the program knows cannot be stored".to_string()));
         }
-        archive.value(time)?;
-        archive.value(at_start)?;
-        archive.value(last_step)?;
-        archive.value(crack_start)?;
+        archive.value(&mut self.time)?;
+        archive.value(&mut self.at_start)?;
+        archive.value(&mut self.last_step)?;
+        archive.value(&mut self.crack_start)?;
         archive.list(points)?;
         affine.iter_mut().try_for_each(|affine| archive.list(&mut affine.gradients))?;
         deformation.iter_mut().try_for_each(|gradients| archive.list(gradients))?;

@@ -36,7 +36,7 @@ pub(crate) struct PointStiffness<'a> {
 impl<'a> PointStiffness<'a> {
     /// Operator of the present grid of `frame`.
     pub(crate) fn new(frame: &'a DiscreteField) -> Self {
-        let nodes = frame.nodes();
+        let nodes = &frame.nodes;
         let free = nodes.free();
         let masses = free.iter().map(|&(at, _)| nodes.mass[at]).collect();
         let zeros = vec![[0.0; 4]; nodes.grid.len()];
@@ -61,14 +61,14 @@ impl StiffnessOperator for PointStiffness<'_> {
             (field[at][component], field[at][component + 2]) = (*x, *x);
         }
         image.fill([0.0; 4]);
-        let (grid, field) = (frame.nodes().grid, &field[..]);
-        scatter(&frame.cells().strips, [&mut image[..]], [grid.stride], |strip, window| {
+        let (grid, field) = (frame.nodes.grid, &field[..]);
+        scatter(&frame.cells.strips, [&mut image[..]], [grid.stride], |strip, window| {
             dispatch(ElasticForces {
-                patch: frame.patch(),
+                patch: &frame.patch,
                 grid,
-                moduli: frame.moduli(),
-                cells: &frame.cells().cells[strip.cells.clone()],
-                points: frame.points(),
+                moduli: frame.moduli,
+                cells: &frame.cells.cells[strip.cells.clone()],
+                points: &frame.points,
                 field,
                 window,
             });

@@ -124,9 +124,4 @@ impl SurfaceLoad {
         }
         archive.value(powers)
     }
-
-    /// Heap memory, bytes.
-    pub(crate) fn bytes(&self) -> usize {
-        self.points.len() * size_of::<MovingSurfacePoint>()
-    }
 }

@@ -34,8 +34,7 @@
 use super::grid::NodalFields;
 use super::smoothing::Smoothing;
 use super::windows::side_by_side;
-use crate::linear_algebra::control_grid::ControlGrid;
-use crate::linear_algebra::control_grid::VectorField;
+use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
 use crate::scene::Transfer;
 
 /// Fraction of `1/ω_max` up to which a step is stable (see the module).
@@ -50,7 +49,7 @@ pub(crate) struct VelocityTransfer {
     pub increment: VectorField,
     /// Part of its own velocity that a point keeps.
     pub kept_fraction: f64,
-    transfer: Transfer,
+    pub transfer: Transfer,
     /// Velocity of the grid and [`Self::increment`], side by side.
     fields: Vec<[f64; 4]>,
 }
@@ -59,11 +58,6 @@ impl VelocityTransfer {
     /// Nothing yet.
     pub(crate) fn new(grid: ControlGrid, transfer: Transfer) -> Self {
         Self { increment: [grid.zeros(), grid.zeros()], kept_fraction: 1.0, transfer, fields: Vec::new() }
-    }
-
-    /// The transfer.
-    pub(crate) fn transfer(&self) -> Transfer {
-        self.transfer
     }
 
     /// From the velocities on the grid before and after the step.
@@ -99,11 +93,6 @@ impl VelocityTransfer {
         let ([ux, uy], [tx, ty]) = (motion, &self.increment);
         side_by_side([ux, uy, tx, ty], &mut self.fields);
         &self.fields
-    }
-
-    /// Heap memory, bytes.
-    pub(crate) fn bytes(&self) -> usize {
-        8 * (2 + 4) * self.increment[0].len()
     }
 }
 

@@ -11,8 +11,7 @@ use rayon::prelude::*;
 
 use super::windows::{cut, scatter};
 use crate::dynamics::forcing::{Forcing, VolumeLoad};
-use crate::linear_algebra::control_grid::ControlGrid;
-use crate::linear_algebra::control_grid::VectorField;
+use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
 use crate::material::hencky::{Gradient, gradient_at_end};
 use crate::particles::points::{Cell, Cells, Point};
 use crate::splines::patch::Patch;
@@ -27,7 +26,7 @@ pub(crate) struct PointForcing {
     /// Velocity and its gradient in the motion of the step.
     motion: Vec<([f64; 2], Gradient)>,
     /// Powers of the old and of the new load on that motion, W/m.
-    powers: [f64; 2],
+    pub powers: [f64; 2],
 }
 
 impl PointForcing {
@@ -98,16 +97,6 @@ impl PointForcing {
                 });
             }
         });
-    }
-
-    /// Powers of the old and of the new loads on the motion of the last step, W/m.
-    pub(crate) fn powers(&self) -> [f64; 2] {
-        self.powers
-    }
-
-    /// Heap memory, bytes.
-    pub(crate) fn bytes(&self) -> usize {
-        self.loads.len() * size_of::<VolumeLoad>() + self.motion.len() * size_of::<([f64; 2], Gradient)>()
     }
 }
 

@@ -3,7 +3,7 @@
 use super::cut::{EdgesInSpans, Rules};
 use super::cut_batch::{CutPoint, first_function};
 use super::gaps::Gaps;
-use super::tables::{Row, tiles};
+use super::tables::tiles;
 use super::{Lattice, STRIP_ROWS, cut, directions, fills_lattice};
 use crate::linear_algebra::lane::{LANES, Lane};
 use crate::scene::edges::BoundaryEdge;
@@ -55,19 +55,8 @@ impl Lattice {
 
     /// Every point of the tables.
     fn of_tables(patch: &Patch, body: &Body) -> Self {
-        let [x, y] = directions(body, &patch.spaces, patch.geometry.is_some()).map(|along| along.columns());
+        let [x, rows] = directions(body, &patch.spaces, patch.geometry.is_some()).map(|along| along.columns());
         let degree = [0, 1].map(|d| patch.spaces[d].degree());
-        let rows: Vec<Row> = y
-            .into_iter()
-            .map(|c| Row {
-                first: c.first,
-                lift: 0,
-                value: c.value,
-                derivative: c.derivative,
-                weight: c.weight,
-                position: c.position,
-            })
-            .collect();
         let mut lattice = Self {
             grid: patch.control_grid(),
             patch_grid: patch.control_grid(),

@@ -16,15 +16,6 @@ impl Lattice {
         (row < self.patch_rows).then_some(row / self.strip_rows)
     }
 
-    /// The first control point of the patch that a point sees, by column and row: that of its span.
-    pub(crate) fn span_of(&self, batch: usize, lane: usize) -> [usize; 2] {
-        if let Some(cut) = self.cut_batch(batch) {
-            return cut.first;
-        }
-        let (row, tile, _, _) = self.unbatch(batch);
-        [self.tiles[tile].first + lane, self.rows[row].first - self.rows[row].lift]
-    }
-
     /// Strip and tile of the patch where a cell of points lies; those of each span if a boundary cuts them.
     pub(crate) fn tiles_of_cell(&self, cell: usize) -> impl Iterator<Item = [usize; 2]> + '_ {
         self.blocks_of_cell(cell).map(|([column, row], _)| {

@@ -201,7 +201,7 @@ impl Cutter<'_> {
         let outer = 1 - inner;
         let mut breaks = vec![low[outer], high[outer]];
         for (n, edge) in edges.iter().enumerate() {
-            breaks.extend(edge.ends(outer));
+            breaks.extend(edge.bounding_box().map(|corner| corner[outer]));
             let sides = fault!("cut-spans-undivided", [low[inner], high[inner]] => [f64::INFINITY; 2]);
             breaks.extend(sides.into_iter().flat_map(|side| edge.crossings(inner, side)));
             breaks.extend(edges[..n].iter().flat_map(|other| edge.meets(other)).map(|place| place[outer]));

@@ -27,7 +27,7 @@ impl CutPoint {
 }
 
 /// Eight points of one span.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct CutBatch {
     /// Column and row of the first function of the span.
     pub first: FunctionIndex,
@@ -53,14 +53,7 @@ impl CutBatch {
     ) -> impl Iterator<Item = Self> {
         let first = first_function(patch, span);
         points.chunks(LANES).map(move |points| {
-            let mut batch = Self {
-                first,
-                lift,
-                weight: Lane::ZERO,
-                position: [Lane::ZERO; 2],
-                value: [[Lane::ZERO; MAX_ORDER]; 2],
-                derivative: [[Lane::ZERO; MAX_ORDER]; 2],
-            };
+            let mut batch = Self { first, lift, ..Self::default() };
             for lane in 0..LANES {
                 let (position, [width, height]) = points.get(lane).copied().unwrap_or((points[0].0, [0.0; 2]));
                 batch.weight[lane] = width * height;

@@ -117,7 +117,7 @@ impl Lattice {
     }
 
     /// Column and row of the first function of the span of the point of a batch in a lane.
-    pub(super) fn first_of(&self, batch: usize, lane: usize) -> [usize; 2] {
+    pub(crate) fn first_of(&self, batch: usize, lane: usize) -> [usize; 2] {
         if let Some(cut) = self.cut_batch(batch) {
             return cut.first;
         }

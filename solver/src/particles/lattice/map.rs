@@ -12,7 +12,7 @@ impl Lattice {
         for (at, weight) in self.grid.indices().zip(patch.weights()) {
             weights[at] = fault!("rational-weights-ignored", *weight => 1.0);
         }
-        let mut points = vec![MappedPoint::ZERO; self.batches()];
+        let mut points = vec![MappedPoint::default(); self.batches()];
         let mut determinants = vec![Lane::ZERO; self.batches()];
         for batch in 0..self.batches() {
             let (_, tile, _, _) = self.unbatch(batch);

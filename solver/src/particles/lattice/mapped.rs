@@ -26,7 +26,7 @@ impl Mapping {
 }
 
 /// The weight function W and the geometry map at a batch of points.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct MappedPoint {
     /// 1/W.
     pub inverse_weight: Lane,
@@ -39,13 +39,6 @@ pub(crate) struct MappedPoint {
 }
 
 impl MappedPoint {
-    pub(super) const ZERO: Self = Self {
-        inverse_weight: Lane::ZERO,
-        weight_slope: [Lane::ZERO; 2],
-        inverse_jacobian: [Lane::ZERO; 4],
-        position: [Lane::ZERO; 2],
-    };
-
     /// Value and physical gradient of a rational field from the sum `A` and its parametric slopes.
     #[inline(always)]
     pub(crate) fn field(&self, sum: Lane, slopes: [Lane; 2]) -> (Lane, [Lane; 2]) {

@@ -93,9 +93,4 @@ impl Sheets {
             field.extend_from_within(copied);
         }
     }
-
-    /// Heap memory, bytes.
-    pub(super) fn bytes(&self) -> usize {
-        16 * self.ties.len() + self.points.values().map(|points| 24 * points.len()).sum::<usize>()
-    }
 }

@@ -38,15 +38,6 @@ pub struct Row {
     pub position: Vec<f64>,
 }
 
-/// Span indices and the part of each span that belongs to the body, along one direction.
-pub(super) struct Columns {
-    pub first: usize,
-    pub value: Vec<[f64; MAX_ORDER]>,
-    pub derivative: Vec<[f64; MAX_ORDER]>,
-    pub weight: Vec<f64>,
-    pub position: Vec<f64>,
-}
-
 /// Part `[left, right]` of a body along one direction, and the points of a rule there.
 pub(super) struct Along<'a> {
     pub space: &'a SplineSpace,
@@ -76,12 +67,13 @@ impl Along<'_> {
     }
 
     /// Tables of the spans.
-    pub(super) fn columns(&self) -> Vec<Columns> {
+    pub(super) fn columns(&self) -> Vec<Row> {
         let column = |(index, ends): (usize, [f64; 2])| {
             let (position, weight): (Vec<f64>, Vec<f64>) = self.points(ends).unzip();
             let shapes: Vec<_> = position.iter().map(|&x| self.space.shape_functions(index, x)).collect();
-            Columns {
+            Row {
                 first: self.space.spans()[index].first,
+                lift: 0,
                 value: shapes.iter().map(|s| s.value).collect(),
                 derivative: shapes.iter().map(|s| s.derivative).collect(),
                 weight,
@@ -93,7 +85,7 @@ impl Along<'_> {
 }
 
 /// Groups columns whose first control columns follow each other into tiles of at most [`LANES`].
-pub(super) fn tiles(columns: &[Columns], order: usize) -> Vec<Tile> {
+pub(super) fn tiles(columns: &[Row], order: usize) -> Vec<Tile> {
     let mut tiles: Vec<Tile> = Vec::new();
     for column in columns {
         let points = column.weight.len();

@@ -4,29 +4,33 @@ use super::error::NurbsError;
 use crate::splines::spline::MAX_DEGREE;
 
 /// Degree and open knot vector of one direction.
-pub(super) fn knots(direction: usize, degree: usize, knots: &[f64]) -> Result<(), NurbsError> {
+///
+/// # Errors
+/// What is wrong with them, and where.
+pub(crate) fn knots(direction: usize, degree: usize, knots: &[f64]) -> Result<(), NurbsError> {
+    let wrong = |what: String| Err(NurbsError::Knots { direction, what });
     if !(1..=MAX_DEGREE).contains(&degree) {
-        return Err(NurbsError::Degree { direction, degree });
+        return wrong(format!("degree {degree} is not from 1 to {MAX_DEGREE}"));
     }
     let (count, least) = (knots.len(), 2 * (degree + 1));
     if count < least {
-        return Err(NurbsError::KnotCount { direction, count, least });
+        return wrong(format!("{count} knots; an open knot vector of degree {degree} has at least {least}"));
     }
     if let Some(index) = knots.iter().position(|k| !k.is_finite()) {
-        return Err(NurbsError::KnotNotFinite { direction, index, value: knots[index] });
+        return wrong(format!("knot {index} is {}; knots are finite numbers", knots[index]));
     }
     if let Some(index) = (1..count).find(|&i| knots[i] < knots[i - 1]) {
-        return Err(NurbsError::DecreasingKnots { direction, index, previous: knots[index - 1], value: knots[index] });
+        let [previous, knot] = [knots[index - 1], knots[index]];
+        return wrong(format!("knot {index} is {knot}, less than {previous} before it; knots never decrease"));
     }
-    let (low, high) = (knots[0], knots[count - 1]);
+    let (low, high, ends) = (knots[0], knots[count - 1], degree + 1);
     for group in knots.chunk_by(|a, b| a == b) {
         let (knot, times) = (group[0], group.len());
-        if knot == low || knot == high {
-            if times != degree + 1 {
-                return Err(NurbsError::NotOpen { direction, knot, times, expected: degree + 1 });
-            }
-        } else if times > degree {
-            return Err(NurbsError::TornKnot { direction, knot, times, degree });
+        let is_end = knot == low || knot == high;
+        if is_end && times != ends {
+            return wrong(format!("end knot {knot} stands {times} times; an open knot vector repeats it {ends} times"));
+        } else if !is_end && times > degree {
+            return wrong(format!("inner knot {knot} stands {times} times; more than {degree} tear the patch"));
         }
     }
     Ok(())
@@ -38,20 +42,22 @@ pub(super) fn control_net(
     control_points: &[[f64; 2]],
     weights: &[f64],
 ) -> Result<(), NurbsError> {
-    let expected = columns * rows;
-    if control_points.len() != expected {
-        return Err(NurbsError::ControlPointCount { given: control_points.len(), columns, rows });
+    let (given, expected) = ([control_points.len(), weights.len()], columns * rows);
+    if given[0] != expected {
+        let what = format!("{} control points; the knots and degrees ask for {columns} x {rows}", given[0]);
+        return Err(NurbsError::ControlPoints(what));
     }
-    if weights.len() != expected {
-        return Err(NurbsError::WeightCount { given: weights.len(), expected });
+    if given[1] != expected {
+        return Err(NurbsError::Weights(format!("{} weights for {expected} control points", given[1])));
     }
     for (n, (point, &weight)) in control_points.iter().zip(weights).enumerate() {
-        let (column, row) = (n % columns, n / columns);
+        let place = format!("control point ({}, {})", n % columns, n / columns);
         if !point.iter().all(|x| x.is_finite()) {
-            return Err(NurbsError::ControlPointNotFinite { column, row, value: *point });
+            return Err(NurbsError::ControlPoints(format!("{place} is {point:?}; coordinates are finite numbers")));
         }
         if !(weight > 0.0 && weight.is_finite()) {
-            return Err(NurbsError::Weight { column, row, value: weight });
+            let what = format!("the weight of {place} is {weight}; weights are positive and finite");
+            return Err(NurbsError::Weights(what));
         }
     }
     Ok(())
@@ -73,37 +79,37 @@ mod tests {
 
     #[test]
     fn bad_knots_are_refused_where_they_are() {
-        use NurbsError::*;
-        let refuse = |degree, vector: &[f64]| knots(1, degree, vector).unwrap_err();
-        assert_eq!(refuse(5, &KNOTS), Degree { direction: 1, degree: 5 });
-        assert_eq!(refuse(0, &KNOTS), Degree { direction: 1, degree: 0 });
-        assert_eq!(refuse(2, &KNOTS), KnotCount { direction: 1, count: 4, least: 6 });
-        assert!(matches!(refuse(1, &[0.0, 0.0, f64::NAN, 1.0, 1.0]), KnotNotFinite { index: 2, .. }));
-        assert_eq!(
-            refuse(1, &[0.0, 0.0, 0.5, 0.4, 1.0, 1.0]),
-            DecreasingKnots { direction: 1, index: 3, previous: 0.5, value: 0.4 }
-        );
-        assert!(matches!(refuse(1, &[0.0, 0.5, 1.0, 1.0]), NotOpen { times: 1, expected: 2, .. }));
-        assert!(matches!(refuse(1, &[0.0, 0.0, 0.0, 1.0, 1.0]), NotOpen { times: 3, .. }));
-        assert!(matches!(refuse(1, &[1.0, 1.0, 1.0, 1.0]), NotOpen { times: 4, .. }));
-        assert!(matches!(refuse(1, &[0.0, 0.0, 0.5, 0.5, 1.0, 1.0]), TornKnot { times: 2, degree: 1, .. }));
+        let refuse = |degree, vector: &[f64]| knots(1, degree, vector).unwrap_err().to_string();
+        for (degree, vector, said) in [
+            (5, &KNOTS[..], "direction 1: degree 5 is not from 1 to 4"),
+            (0, &KNOTS, "direction 1: degree 0 is not from 1 to 4"),
+            (2, &KNOTS, "4 knots; an open knot vector of degree 2 has at least 6"),
+            (1, &[0.0, 0.0, f64::NAN, 1.0, 1.0], "knot 2 is NaN"),
+            (1, &[0.0, 0.0, 0.5, 0.4, 1.0, 1.0], "knot 3 is 0.4, less than 0.5"),
+            (1, &[0.0, 0.5, 1.0, 1.0], "end knot 0 stands 1 times; an open knot vector repeats it 2 times"),
+            (1, &[0.0, 0.0, 0.0, 1.0, 1.0], "stands 3 times"),
+            (1, &[1.0, 1.0, 1.0, 1.0], "stands 4 times"),
+            (1, &[0.0, 0.0, 0.5, 0.5, 1.0, 1.0], "inner knot 0.5 stands 2 times; more than 1 tear"),
+        ] {
+            assert!(refuse(degree, vector).contains(said), "{}", refuse(degree, vector));
+        }
     }
 
     #[test]
     fn bad_control_nets_are_refused_where_they_are() {
         assert!(square(&KNOTS, CORNERS, [1.0; 4]).is_ok());
         let error = square(&[0.0, 0.0, 0.5, 1.0, 1.0], CORNERS, [1.0; 4]).unwrap_err();
-        assert_eq!(error, NurbsError::ControlPointCount { given: 4, columns: 3, rows: 2 });
+        assert!(error.to_string().starts_with("4 control points; the knots and degrees ask for 3 x 2"), "{error}");
         let error = NurbsPatch::new([1, 1], [&KNOTS, &KNOTS], CORNERS.to_vec(), vec![1.0; 3]).unwrap_err();
-        assert_eq!(error, NurbsError::WeightCount { given: 3, expected: 4 });
+        assert_eq!(error, NurbsError::Weights("3 weights for 4 control points".to_string()));
         for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             let error = square(&KNOTS, CORNERS, [1.0, 1.0, bad, 1.0]).unwrap_err();
-            assert!(matches!(error, NurbsError::Weight { column: 0, row: 1, .. }), "{error}");
+            assert!(error.to_string().starts_with("the weight of control point (0, 1)"), "{error}");
         }
         let mut points = CORNERS;
         points[3][1] = f64::NAN;
         let error = square(&KNOTS, points, [1.0; 4]).unwrap_err();
-        assert!(matches!(error, NurbsError::ControlPointNotFinite { column: 1, row: 1, .. }), "{error}");
+        assert!(error.to_string().starts_with("control point (1, 1)"), "{error}");
     }
 
     #[test]

@@ -20,7 +20,7 @@ impl NurbsPatch {
         for d in 0..2 {
             check::knots(d, degree[d], knots[d])?;
             if !(high[d] > low[d] && (high[d] - low[d]).is_finite()) {
-                return Err(NurbsError::Rectangle { low, high });
+                return Err(NurbsError::Empty(format!("a rectangle from {low:?} to {high:?} has no area")));
             }
         }
         let first = [0, 1].map(|d| knots[d][0]);
@@ -47,12 +47,11 @@ impl NurbsPatch {
     /// # Errors
     /// If not 0 ≤ inner < outer, or the angles do not grow or differ by more than a turn.
     pub fn annular_sector(inner: f64, outer: f64, angles: [f64; 2]) -> Result<Self, NurbsError> {
-        if !(inner >= 0.0 && outer > inner && outer.is_finite()) {
-            return Err(NurbsError::Radii { inner, outer });
-        }
+        ring(inner, outer)?;
         let turn = angles[1] - angles[0];
         if !(turn > 0.0 && turn <= TAU * (1.0 + 1e-15)) {
-            return Err(NurbsError::Angles { start: angles[0], end: angles[1] });
+            let [start, end] = angles;
+            return Err(NurbsError::Empty(format!("angles {start} to {end}: the second is larger, by a turn at most")));
         }
         // A quarter turn computed with round-off is still one piece.
         let pieces = ((turn / FRAC_PI_2 - 1e-12).ceil() as usize).max(1);
@@ -78,15 +77,20 @@ impl NurbsPatch {
     /// # Errors
     /// If not 0 ≤ inner < outer.
     pub fn quarter_annulus(inner: f64, outer: f64) -> Result<Self, NurbsError> {
-        if !(inner >= 0.0 && outer > inner && outer.is_finite()) {
-            return Err(NurbsError::Radii { inner, outer });
-        }
+        ring(inner, outer)?;
         let control_points =
             [[1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].iter().flat_map(|e| [inner, outer].map(|r| [r * e[0], r * e[1]]));
         let weights = [1.0, 1.0, 0.5, 0.5, 1.0, 1.0].map(f64::sqrt).to_vec();
         let arc = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
         Self::new([1, 2], [&[0.0, 0.0, 1.0, 1.0], &arc], control_points.collect(), weights)
     }
+}
+
+/// Whether radii (m) are those of a ring.
+fn ring(inner: f64, outer: f64) -> Result<(), NurbsError> {
+    let holds = inner >= 0.0 && outer > inner && outer.is_finite();
+    let what = || format!("radii {inner} and {outer}: the inner one is at least 0 and less than the outer one");
+    if holds { Ok(()) } else { Err(NurbsError::Empty(what())) }
 }
 
 #[cfg(test)]
@@ -125,14 +129,13 @@ mod tests {
 
     #[test]
     fn impossible_shapes_are_refused() {
-        use NurbsError::{Angles, Radii, Rectangle};
-        assert!(matches!(NurbsPatch::quarter_annulus(2.0, 1.0), Err(Radii { .. })));
-        assert!(matches!(NurbsPatch::quarter_annulus(-1.0, 1.0), Err(Radii { .. })));
-        assert!(matches!(NurbsPatch::annular_sector(0.0, f64::NAN, [0.0, 1.0]), Err(Radii { .. })));
-        assert!(matches!(NurbsPatch::annular_sector(0.0, 1.0, [1.0, 1.0]), Err(Angles { .. })));
-        assert!(matches!(NurbsPatch::annular_sector(0.0, 1.0, [0.0, 7.0]), Err(Angles { .. })));
+        assert!(matches!(NurbsPatch::quarter_annulus(2.0, 1.0), Err(NurbsError::Empty(_))));
+        assert!(matches!(NurbsPatch::quarter_annulus(-1.0, 1.0), Err(NurbsError::Empty(_))));
+        assert!(matches!(NurbsPatch::annular_sector(0.0, f64::NAN, [0.0, 1.0]), Err(NurbsError::Empty(_))));
+        assert!(matches!(NurbsPatch::annular_sector(0.0, 1.0, [1.0, 1.0]), Err(NurbsError::Empty(_))));
+        assert!(matches!(NurbsPatch::annular_sector(0.0, 1.0, [0.0, 7.0]), Err(NurbsError::Empty(_))));
         let knots: &[f64] = &[0.0, 0.0, 1.0, 1.0];
         let flat = NurbsPatch::rectangle([1, 1], [knots, knots], [0.0, 1.0], [1.0, 1.0]);
-        assert!(matches!(flat, Err(Rectangle { .. })));
+        assert!(matches!(flat, Err(NurbsError::Empty(_))));
     }
 }

@@ -17,8 +17,7 @@ impl<K: PointKernel> StripSweep<'_, K> {
                 continue;
             }
             let CutBatch { first: [column, row], lift, weight, value: [_, y], derivative: [_, dy], .. } = batch;
-            let mut point =
-                PointValues { gradient: [Lane::ZERO; 4], phase: Lane::ZERO, phase_gradient: [Lane::ZERO; 2] };
+            let mut point = PointValues::default();
             for l in 0..ky {
                 if K::DISPLACEMENT {
                     let at = grid.index(*column, row + lift + l);

@@ -151,8 +151,7 @@ impl<K: PointKernel> StripSweep<'_, K> {
         for b in 0..ny {
             let (value, derivative) = (&row.value[b], &row.derivative[b]);
             for a in 0..nx {
-                let mut point =
-                    PointValues { gradient: [Lane::ZERO; 4], phase: Lane::ZERO, phase_gradient: [Lane::ZERO; 2] };
+                let mut point = PointValues::default();
                 let mut displacement = [Lane::ZERO; 2]; // needed for rational gradients only
                 for k in 0..ky {
                     let slot = &sums[((row.first + k) % ky) * SUMS * nx..][..SUMS * nx];

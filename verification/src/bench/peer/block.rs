@@ -81,11 +81,11 @@ impl PeerBlock {
             let amplitude = AMPLITUDE * speed;
             [drift[0] + amplitude * cx * sy, drift[1] - amplitude * sx * cy]
         });
-        let before = start.fields()[0].points().to_vec();
+        let before = start.fields[0].points.to_vec();
         let mut block = Self { scene, start, step, steps: [long / 10, long], drift, before, after: Vec::new() };
         let mut frame = block.start.clone();
         block.advance(&mut frame, long)?;
-        block.after = block.in_first_order(frame.fields()[0].points());
+        block.after = block.in_first_order(&frame.fields[0].points);
         if block.after.len() < block.before.len() {
             return Err(BenchError::other("points of the block of the peer are not found again"));
         }

@@ -76,7 +76,7 @@ fn approach(scene: &Scene) -> Result<Onset, StudyError> {
 /// Whether a control point of the patch has mass of two bodies.
 fn share_a_control_point(frame: &UpdatedFrame, span: f64) -> bool {
     let places = |body: usize| {
-        let nodes = frame.fields()[body].nodes();
+        let nodes = &frame.fields[body].nodes;
         let massive = nodes.grid.indices().filter(|at| nodes.mass[*at] > 0.0);
         massive.map(|at| nodes.position(at).map(|x| (1e3 * x / span).round() as i64)).collect::<HashSet<_>>()
     };

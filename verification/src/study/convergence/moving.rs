@@ -60,7 +60,7 @@ impl<'a> Moving<'a> {
         let solution = self.problem.solution.clone();
         self.frame.set_initial_velocity(|x| solution.velocity(x, 0.0));
         let moved = |p: &Point| solution.displacement(p.position, 0.0).iter().any(|u| u.abs() > AT_REST);
-        if self.frame.fields()[0].points().iter().any(moved) {
+        if self.frame.fields[0].points.iter().any(moved) {
             displace(&mut self.frame, &self.scene.bodies[0], |x| solution.displacement(x, 0.0))?;
         }
         let (solution, loading) = (self.problem.solution.clone(), self.setup.loading);
@@ -72,11 +72,11 @@ impl<'a> Moving<'a> {
     /// (s).
     fn errors(&self, end: f64, dt: f64) -> Vec<f64> {
         let solution = &self.problem.solution;
-        let acceleration = &self.frame.fields()[0].nodes().acceleration;
-        let sides = self.frame.patch().spaces.each_ref().map(sides);
+        let acceleration = &self.frame.fields[0].nodes.acceleration;
+        let sides = self.frame.patch.spaces.each_ref().map(sides);
         let mut squares = [[0.0; 2]; 3];
-        for point in self.frame.fields()[0].points() {
-            let patch = self.frame.fields()[0].patch();
+        for point in &self.frame.fields[0].points {
+            let patch = &self.frame.fields[0].patch;
             let a = acceleration.each_ref().map(|a| patch.evaluate(a, point.position).unwrap_or_default().value);
             let velocity = [0, 1].map(|d: usize| point.velocity[d] + 0.5 * dt * a[d]);
             let reference = point.reference();
@@ -114,7 +114,7 @@ impl OnMesh for Moving<'_> {
             self.frame.step(dt).map_err(broken)?;
         }
         let errors = self.errors(end, dt);
-        let grid = self.frame.patch().control_grid();
+        let grid = self.frame.patch.control_grid();
         let unknowns = 2 * grid.columns * grid.rows;
         Ok(Level { h: self.span_length(), unknowns, seconds: start.elapsed().as_secs_f64(), errors })
     }
@@ -124,7 +124,7 @@ impl OnMesh for Moving<'_> {
     }
 
     fn span_length(&self) -> f64 {
-        let spans = self.frame.patch().spaces.each_ref().map(|space| {
+        let spans = self.frame.patch.spaces.each_ref().map(|space| {
             let [left, right] = sides(space);
             (right - left) / space.spans().len() as f64
         });
@@ -139,7 +139,7 @@ pub(crate) fn displace(
     body: &Body,
     displacement: impl Fn([f64; 2]) -> [f64; 2] + Sync,
 ) -> Result<(), StudyError> {
-    let patch = frame.patch();
+    let patch = &frame.patch;
     let whole = Body { shape: Shape::Patch, layout: Layout::Gauss, ..body.clone() };
     let lattice = Lattice::new(patch, &whole);
     let projection = Projection::new(&lattice, &[]).ok_or_else(|| other("the points do not determine a projection"))?;
@@ -165,22 +165,7 @@ fn is_in_middle(x: f64, [left, right]: [f64; 2]) -> bool {
 }
 
 fn broken(failure: Failure) -> StudyError {
-    match failure {
-        Failure::PhaseField(failure) => other(format!("the phase-field solve {failure}")),
-        Failure::SingularMass => other("the mass matrix is singular to round-off"),
-        Failure::NoStep => other("the critical time step is not a number"),
-        Failure::Left([x, y]) => other(format!("a point left the mesh at ({x}, {y})")),
-        Failure::NoPoints(_) => other("the body contains no material point"),
-        Failure::HoldsNothing(_)
-        | Failure::Contradiction(_)
-        | Failure::LostCondition { .. }
-        | Failure::HeldTwice { .. } => other("conditions hold nothing, or contradict"),
-        Failure::NoEquilibrium(_) | Failure::Unbalanced(_) => other("there is no static state"),
-        Failure::LostTraction { .. } => other("a part of a traction would not act"),
-        Failure::Unconverged(_) | Failure::TooFast(_) | Failure::TooDeep(_) | Failure::BareBoundary { .. } => {
-            other("contact cannot follow the bodies")
-        }
-    }
+    other(failure.to_string())
 }
 
 #[cfg(test)]

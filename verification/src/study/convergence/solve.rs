@@ -63,8 +63,8 @@ impl OnMesh for Discrete<'_> {
             }
             Equation::Dynamic => {
                 let end = self.run(step)?;
-                let mut errors = self.displacement_errors(self.frame.displacement(), end);
-                errors.push(self.velocity_error(self.frame.velocity(), end));
+                let mut errors = self.displacement_errors(&self.frame.displacement, end);
+                errors.push(self.velocity_error(&self.frame.velocity, end));
                 if let Some(fracture) = &self.frame.fracture {
                     errors.extend(self.phase_errors(fracture.field.control_values(), end));
                 }
@@ -103,7 +103,7 @@ impl OnMesh for Discrete<'_> {
     }
 
     fn span_length(&self) -> f64 {
-        let [x, y] = self.frame.patch().spaces.each_ref().map(|space| space.spans().len());
+        let [x, y] = self.frame.patch.spaces.each_ref().map(|space| space.spans().len());
         (self.points.area() / (x * y) as f64).sqrt()
     }
 }
@@ -113,7 +113,7 @@ impl<'a> Discrete<'a> {
     pub fn new(setup: &'a ConvergenceSetup, problem: &'a Problem, n: usize, cells: usize) -> Result<Self, StudyError> {
         let scene = scene(setup, problem, n, cells, Variant::PLAIN)?;
         let frame = TotalFrame::new(&scene).map_err(|_| other("the initial phase field does not converge"))?;
-        let points = ErrorPoints::new(frame.patch(), &scene.bodies[0]);
+        let points = ErrorPoints::new(&frame.patch, &scene.bodies[0]);
         Ok(Self { setup, problem, frame, points, scene })
     }
 
@@ -144,7 +144,7 @@ impl<'a> Discrete<'a> {
     }
 
     fn grid(&self) -> ControlGrid {
-        self.frame.lattice().grid
+        self.frame.lattice.grid
     }
 
     fn manufactured(&self) -> Arc<Manufactured> {
@@ -162,10 +162,10 @@ impl<'a> Discrete<'a> {
     fn project(&self, function: impl Fn([f64; 2]) -> [f64; 2] + Sync) -> Result<VectorField, StudyError> {
         let component = |i: usize| -> Result<Vec<f64>, StudyError> {
             let held = match self.problem.equation {
-                Equation::Dynamic => self.frame.constraints().held(i),
+                Equation::Dynamic => self.frame.constraints.held(i),
                 _ => Vec::new(),
             };
-            let projection = Projection::new(self.frame.lattice(), &held)
+            let projection = Projection::new(&self.frame.lattice, &held)
                 .ok_or_else(|| other("the points do not determine a projection"))?;
             Ok(projection.project(|x| function(x)[i]))
         };
@@ -174,7 +174,7 @@ impl<'a> Discrete<'a> {
 
     /// The quotient of `Σ_p V_p N_I f` and `Σ_p V_p N_I`: what a lumped transfer from points to grid gives.
     fn project_by_row_sums(&self, function: impl Fn([f64; 2]) -> [f64; 2] + Sync) -> VectorField {
-        let lattice = self.frame.lattice();
+        let lattice = &self.frame.lattice;
         let volumes = lattice.integrate(|_, _, _| 1.0);
         [0, 1].map(|i| {
             let sums = lattice.integrate(|_, _, x| function(x)[i]);
@@ -196,14 +196,14 @@ impl<'a> Discrete<'a> {
     /// Least-squares projection of the exact displacement along the sides that are held.
     fn project_on_sides(&self) -> Result<VectorField, StudyError> {
         let mut field = [self.grid().zeros(), self.grid().zeros()];
-        let degree = self.frame.patch().spaces.each_ref().map(|space| space.degree());
+        let degree = self.frame.patch.spaces.each_ref().map(|space| space.degree());
         let rule = Rule::new(Layout::Gauss, degree[0].max(degree[1]) + 3);
         for &(side, fixed) in &self.problem.held {
             let at = control_points_on(side, self.grid());
             let number = |index: usize| at.iter().position(|&other| other == index);
             let mut matrix = DMatrix::zeros(at.len(), at.len());
             let mut right = DMatrix::zeros(at.len(), 2);
-            for point in self.frame.patch().boundary(side, &rule) {
+            for point in self.frame.patch.boundary(side, &rule) {
                 let exact = self.problem.solution.displacement(point.functions.position, 0.0);
                 let on_side = point.functions.values.iter().filter_map(|&(index, value)| Some((number(index)?, value)));
                 let functions: Vec<(usize, f64)> = on_side.collect();
@@ -231,7 +231,7 @@ impl<'a> Discrete<'a> {
         let phase = self.problem.solution.phase().ok_or_else(|| other("the solution has no phase field"))?;
         let model = FractureModel::of(&self.problem.solution.material());
         let model = model.ok_or_else(|| other("the material has no fracture"))?;
-        let lattice = self.frame.lattice();
+        let lattice = &self.frame.lattice;
         let mut history = vec![Lane::ZERO; lattice.batches()];
         lattice.for_each_point(|batch, lane, x, _| history[batch][lane] = phase.history(x, 0.0));
         let mut field = PhaseField::new(lattice, model, &self.scene.solver);
@@ -260,7 +260,7 @@ impl<'a> Discrete<'a> {
         let moduli = ElasticModuli::new(&material, solution.plane());
         let mut forces = [self.grid().zeros(), self.grid().zeros()];
         let [x, y] = &mut forces;
-        self.frame.lattice().add_integral(&mut [x, y], |_, _, position| {
+        self.frame.lattice.add_integral(&mut [x, y], |_, _, position| {
             let [[xx, xy], [yx, yy]] = solution.displacement_gradient(position, 0.0);
             let [sx, sy, sxy] = moduli.stress([xx, yy, 0.5 * (xy + yx)].map(Lane::splat)).map(|s| s[0]);
             let force = solution.displacement(position, 0.0).map(|u| SHIFT * material.density * u);
@@ -309,7 +309,7 @@ impl<'a> Discrete<'a> {
     /// Largest error of a component of the stress at a material point, Pa.
     fn largest_stress_error(&self, field: &VectorField) -> f64 {
         let mut worst = 0.0;
-        self.frame.lattice().for_each_point(|_, _, position, _| {
+        self.frame.lattice.for_each_point(|_, _, position, _| {
             let [xx, yy, xy] = self.frame.elastic_stress_at(field, position);
             let exact = self.problem.solution.stress(position, 0.0);
             for error in [xx - exact[0][0], yy - exact[1][1], xy - exact[0][1]] {

@@ -71,7 +71,7 @@ fn fly(scene: &Scene) -> Result<[f64; 4], StudyError> {
             break Some(ending);
         }
         let frame = simulation.updated_frame().ok_or_else(|| other("not the updated frame"))?;
-        let points = frame.fields()[0].points();
+        let points = &frame.fields[0].points;
         on_knots += points.iter().filter(|p| (p.position[0] - p.position[0].round()).abs() < 1e-12).count();
         let speed = points.iter().flat_map(|p| [(p.velocity[0] - 1.0).abs(), p.velocity[1].abs()]);
         off = larger(off, largest(speed));

@@ -110,7 +110,7 @@ fn asymmetry(scene: &Scene) -> Result<f64, StudyError> {
         watch::check()?;
         simulation.advance_to_next_sample()?;
         let frame = simulation.total_frame().ok_or_else(|| other("not the total frame"))?;
-        let ([x, y], grid) = (frame.displacement(), frame.lattice().grid);
+        let ([x, y], grid) = (&frame.displacement, frame.lattice.grid);
         let mirrored = |at: usize| grid.index(grid.columns - 1 - grid.column_of(at), grid.row_of(at));
         let off = grid.indices().flat_map(|at| [(x[at] + x[mirrored(at)]).abs(), (y[at] - y[mirrored(at)]).abs()]);
         worst = larger(worst, largest(off) / largest(x.iter().chain(y).map(|u| u.abs())));

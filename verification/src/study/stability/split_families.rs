@@ -125,9 +125,9 @@ fn scaled_runs() -> Result<(Table, f64), StudyError> {
         for run in &mut runs {
             run.step(dt).map_err(|_| other("the phase field did not converge"))?;
         }
-        let [large, small] = runs.each_ref().map(|run| run.velocity().iter().flatten());
-        let fastest = largest(runs[0].velocity().iter().flatten().map(|v| v.abs()));
-        let fastest_small = largest(runs[1].velocity().iter().flatten().map(|v| v.abs())) / SMALL;
+        let [large, small] = runs.each_ref().map(|run| run.velocity.iter().flatten());
+        let fastest = largest(runs[0].velocity.iter().flatten().map(|v| v.abs()));
+        let fastest_small = largest(runs[1].velocity.iter().flatten().map(|v| v.abs())) / SMALL;
         first = if step == 1 { fastest } else { first };
         worst = larger(worst, largest(large.zip(small).map(|(a, b)| (a - b / SMALL).abs())) / first);
         table.push(&[step as f64, fastest / first, fastest_small / first]);

@@ -23,7 +23,7 @@ pub(super) fn copy_points(level: usize, [before, now]: [&Regions; 2], coarse: &T
     let (from, TotalFrame { lattice, fracture, .. }) = (&coarse.lattice, fine);
     let (Some(coarse), Some(fine)) = (&coarse.fracture, fracture) else { return };
     let is_fresh = |span: [usize; 2]| now.is_refined(level, span) && !before.is_refined(level, span);
-    for (row, tile) in (0..lattice.patch_rows()).flat_map(|row| (0..lattice.tiles.len()).map(move |tile| (row, tile))) {
+    for (row, tile) in (0..lattice.patch_rows).flat_map(|row| (0..lattice.tiles.len()).map(move |tile| (row, tile))) {
         for lane in (0..lattice.tiles[tile].count).filter(|lane| is_fresh([(tile * LANES + lane) / 2, row / 2])) {
             for (b, a) in (0..lattice.points[1]).flat_map(|b| (0..lattice.points[0]).map(move |a| (b, a))) {
                 let at = lattice.batch(row, tile, b, a);

@@ -2,7 +2,7 @@
 //! solver of GEOS verifies contact of three fields (repository GEOS-DEV/GEOS, its three-field verification),
 //! stated for these impulses and judged by its tolerances.
 
-use super::*;
+use super::super::*;
 use crate::contact::boundary_functions::BoundaryFunctions;
 
 /// Tolerances of GEOS: velocities and momentum (relative to the largest), momentum, impulses and gaps.
