@@ -12,6 +12,7 @@ mod edge_conditions;
 mod findings;
 mod geometry;
 mod ground;
+mod held;
 mod look;
 mod material;
 mod mesh;

@@ -44,9 +44,6 @@ const BARE: f64 = 1e-4;
 const ROUND_OFF: f64 = 1e-9;
 /// Distance between ends of edges that counts as none, in lengths of the edge.
 const NEAR: f64 = 1e-9;
-/// Part of the compliance of a multiplier that is added to it, so that moments which nearly follow from
-/// others do no harm.
-const SOFTNESS: f64 = 1e-13;
 /// Yield of a multiplier at control points that can move, of that at all of them, that counts as none.
 const YIELDS: f64 = 1e-9;
 
@@ -74,9 +71,10 @@ pub(in crate::dynamics) struct Multipliers {
 }
 
 impl Multipliers {
-    /// `None` if the moments are not independent.
-    pub(in crate::dynamics) fn new(moments: Vec<Moment>, inverse: Vec<Vec<f64>>) -> Option<Self> {
-        let factor = compliance(&moments, &inverse).and_then(|lower| LowerFactor::new(&lower, None))?;
+    /// A part of the compliance of every multiplier, its `softness`, is added to it. `None` if the moments
+    /// are not independent.
+    pub(in crate::dynamics) fn new(moments: Vec<Moment>, inverse: Vec<Vec<f64>>, softness: f64) -> Option<Self> {
+        let factor = compliance(&moments, &inverse, softness).and_then(|lower| LowerFactor::new(&lower, None))?;
         Some(Self { moments, inverse, factor })
     }
 
@@ -231,8 +229,8 @@ pub(in crate::dynamics) fn moments_of(
     Ok(sums.into_values().filter(|(_, total)| total[0].hypot(total[1]) >= least).map(moment).collect())
 }
 
-/// The functions of control points on a grid along an edge through positions (m); `None` if it does not lie in
-/// a direction of the mesh, or is short.
+/// The functions of control points on a grid along an edge through positions (m); `None` if it does not lie
+/// in a direction of the mesh, or is short.
 pub(in crate::dynamics) fn along_mesh(
     patch: &Patch,
     grid: ControlGrid,
@@ -294,7 +292,7 @@ pub(in crate::dynamics) fn multiplier_space(patch: &Patch, parts: &[Vec<SurfaceP
 }
 
 /// The lower triangle of `B M⁻¹ Bᵀ`.
-fn compliance(moments: &[Moment], inverse: &[Vec<f64>]) -> Option<SparseColMat<usize, f64>> {
+fn compliance(moments: &[Moment], inverse: &[Vec<f64>], softness: f64) -> Option<SparseColMat<usize, f64>> {
     let mut touching = BTreeMap::<(usize, usize), Vec<(usize, f64, f64)>>::new();
     for (row, (moment, inverse)) in moments.iter().zip(inverse).enumerate() {
         for (&(at, component, share), inverse) in moment.shares.iter().zip(inverse) {
@@ -310,7 +308,7 @@ fn compliance(moments: &[Moment], inverse: &[Vec<f64>]) -> Option<SparseColMat<u
         }
     }
     for row in 0..moments.len() {
-        entries.entry((row, row)).and_modify(|own| *own *= 1.0 + SOFTNESS);
+        entries.entry((row, row)).and_modify(|own| *own *= 1.0 + softness);
     }
     let triplets: Vec<_> = entries.into_iter().map(|((column, row), value)| Triplet::new(row, column, value)).collect();
     SparseColMat::try_new_from_triplets(moments.len(), moments.len(), &triplets).ok()

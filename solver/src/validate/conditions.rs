@@ -1,8 +1,8 @@
 //! Checks of the conditions on the sides of the mesh, and of names and motions of all conditions.
 
-use super::edge_conditions::Held;
 use super::findings::{Findings, side_name};
 use super::ground::Ground;
+use super::held::Held;
 use super::time;
 use crate::dynamics::body_sample::column_name;
 use crate::dynamics::updated_frame::held_sides::lies_on;

@@ -91,7 +91,8 @@ impl EdgeConditions {
         }
         let last = conditions.len() - 1;
         let reactions = vec![Reaction::default(); conditions.len()];
-        let multipliers = Multipliers::new(yielding, inverse).ok_or(Failure::HeldTwice { body: 0, condition: last })?;
+        let multipliers =
+            Multipliers::new(yielding, inverse, 0.0).ok_or(Failure::HeldTwice { body: 0, condition: last })?;
         if let Some(moment) = multipliers.dependent(INDEPENDENT, |condition| by_parts[condition]) {
             return Err(Failure::HeldTwice { body: 0, condition: moment.condition });
         }

@@ -25,8 +25,8 @@ impl TotalFrame {
         most
     }
 
-    /// Calls `f` with the batch and the lane of every point that is not broken, and its displacement gradient;
-    /// without `breaking` all count.
+    /// Calls `f` with the batch and the lane of every point that is not broken, and its displacement
+    /// gradient; without `breaking` all count.
     pub(super) fn for_each_gradient(
         &self,
         breaking: Option<&LatticeFracture>,

@@ -28,6 +28,10 @@ use crate::scene::{Body, EdgeCondition};
 use crate::splines::patch::Patch;
 use crate::splines::spline::SplineSpace;
 
+/// Part of the compliance of a multiplier that is added to it, so that moments which nearly follow from
+/// others do no harm.
+const SOFTNESS: f64 = 1e-13;
+
 /// Conditions on the edges of a body in the updated frame.
 #[derive(Debug, Clone)]
 pub(super) struct HeldEdges {
@@ -231,6 +235,6 @@ impl HeldEdges {
         let yielding = moments.into_iter().filter_map(|moment| inverse(&moment).map(|inverse| (moment, inverse)));
         let (moments, inverse): (Vec<Moment>, Vec<_>) = yielding.unzip();
         let Some(last) = moments.last().map(|moment| moment.condition) else { return Ok(None) };
-        Multipliers::new(moments, inverse).map(Some).ok_or(Failure::HeldTwice { body: 0, condition: last })
+        Multipliers::new(moments, inverse, SOFTNESS).map(Some).ok_or(Failure::HeldTwice { body: 0, condition: last })
     }
 }
