@@ -57,17 +57,6 @@ fn beyond_the_critical_step_the_run_says_so() {
     check("fracture", &with_step(notched_plate(1e5), 1.3, 100));
 }
 
-#[test]
-fn below_the_critical_step_it_lasts() {
-    for degree in 1..=3 {
-        let (simulation, samples) = run(&with_step(moving(degree), 0.95, 2000));
-        assert!(simulation.warnings().is_empty(), "{:?}", simulation.warnings());
-        assert_eq!(simulation.plan().steps(), 2000);
-        let closure = closure_of_any_sample(&samples);
-        assert!(closure <= 1e-11, "degree {degree}: {closure:e}");
-    }
-}
-
 /// The quadrature of a coarse step leaves the ledger open in the first steps under a hard pull: a warning,
 /// not the end.
 #[test]

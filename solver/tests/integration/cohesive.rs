@@ -12,7 +12,6 @@ use fisura::scene::*;
 use fisura::splines::patch::Patch;
 use fisura::validate::validate;
 
-use crate::at1::{cost, cost_on_a_line, seeded_strip};
 use crate::common::{elastic_scene, make_cohesive, notched_plate, relative_closure, run};
 
 const L0: f64 = 0.25e-3;
@@ -23,26 +22,6 @@ fn cracking(softening: Softening, split: Split) -> Scene {
     make_cohesive(&mut scene, 7.5e6, softening, split);
     scene.analysis.end_time = 8e-6;
     scene
-}
-
-/// In the limit d = 1 − sin(|x|/b), which costs Gc.
-#[test]
-fn a_seed_costs_what_it_costs_on_a_line_and_in_the_limit_gc() {
-    for (degree, place) in [(1, 0.0), (1, 0.4), (2, 0.0), (2, 0.5), (3, 0.0), (3, 0.3), (4, 0.5)] {
-        let excess = |spans_of_l0: f64| {
-            let mut scene = seeded_strip(degree, spans_of_l0, place);
-            let [x, _] = scene.bodies[0].cracks[0].points[0];
-            make_cohesive(&mut scene, 7.5e6, Softening::Linear, Split::Rankine);
-            scene.bodies[0].particles_per_cell = [degree + 1; 2];
-            let cost = cost(&scene);
-            let on_line = cost_on_a_line(degree, &scene.mesh.knots[0], x, std::f64::consts::FRAC_1_PI, 2.0);
-            assert!((cost - on_line).abs() < 1e-6, "p = {degree}, {spans_of_l0}, {place}: {cost} and {on_line}");
-            cost - 1.0
-        };
-        let costs = [4.0, 8.0].map(excess);
-        let order = (costs[0] / costs[1]).log2();
-        assert!((order - 1.0).abs() < 0.1 && costs[1] > 0.0, "p = {degree}, {place}: {costs:?}, order {order}");
-    }
 }
 
 /// c of a body under the same driving energy everywhere, of its threshold, step by step.

@@ -85,23 +85,6 @@ fn a_slit_in_a_body_at_rest_changes_no_mass_and_no_stress_beside_it() {
     assert!(grid.grid.rows > grid.patch_grid.rows, "there are copies");
 }
 
-#[test]
-fn a_gap_narrower_than_a_support_is_not_bridged() {
-    for degree in [1, 2, 3] {
-        let mut scene = pulled(degree, &[[0.0, 0.005], [0.01, 0.005]]);
-        scene.bodies[0].cracks.clear();
-        let gap = rectangle([-1.0, 0.005], [1.0, 0.005 + 0.01 / 12.0]);
-        scene.bodies[0] = Body {
-            shape: Shape::Difference { of: Box::new(rectangle([0.0; 2], [0.01; 2])), minus: vec![gap] },
-            ..body(Shape::Patch, [degree.max(2); 2])
-        };
-        let ends = [[0.0, 0.01], [0.01, 0.01]];
-        let load = Traction { edge: Edge::Segment(ends), load: Load::Stress([0.0, 1e6]), time: TimeFactor::ramp(1e-6) };
-        scene.bodies[0].tractions = vec![load];
-        assert_eq!(speed_below(&run(&scene).0, 0.0), 0.0, "p = {degree}");
-    }
-}
-
 /// The material beyond a gap that is much thinner than the distance of points, of every kind of boundary.
 #[test]
 fn a_gap_thinner_than_the_distance_of_points_is_not_bridged() {

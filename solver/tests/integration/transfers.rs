@@ -20,37 +20,6 @@ fn scene(degree: usize, mesh: [f64; 2], cells: [usize; 2], min: [f64; 2], max: [
     updated_scene(unit_solid(), Mesh::uniform([degree; 2], [0.0; 2], mesh, cells), rectangle(min, max))
 }
 
-#[test]
-fn a_rigid_translation_is_exact_with_every_transfer() {
-    let velocity = [0.5, -0.3];
-    for (transfer, degree, kinematics) in every() {
-        for layout in [Layout::Uniform, Layout::Gauss] {
-            let mut scene = scene(degree, [2.0, 2.0], [16, 16], [0.313, 0.917], [0.871, 1.413]);
-            scene.bodies[0].velocity = velocity;
-            scene.bodies[0].layout = layout;
-            scene.analysis = Analysis { transfer, kinematics, end_time: 1.6, ..scene.analysis };
-            let what = format!("{transfer:?}, p = {degree}, {kinematics:?}, {layout:?}");
-            let (simulation, samples) = run(&scene);
-            for point in simulation.updated_frame().unwrap().fields()[0].points() {
-                let off = (point.velocity[0] - velocity[0]).hypot(point.velocity[1] - velocity[1]);
-                assert!(off <= 1e-13 * 0.58, "{what}: velocity off by {off:e}");
-                let strain = point.strain.iter().fold(0.0_f64, |a, e| larger(a, e.abs()));
-                assert!(strain <= 1e-13, "{what}: strain {strain:e}");
-                let [x, y] = [0, 1].map(|d| point.displacement[d] - velocity[d] * 1.6);
-                assert!(x.hypot(y) <= 2.5e-14, "{what}: displaced {x:e}, {y:e} m too far");
-            }
-            assert!(relative_closure(&samples) < 1e-13, "{what}");
-            assert!(samples.last().unwrap().transfer_loss.unwrap().abs() < 1e-13 * samples[0].kinetic, "{what}");
-        }
-    }
-}
-
-/// Every transfer with degrees 1 to 3, small and finite strains.
-fn every() -> impl Iterator<Item = (Transfer, usize, Kinematics)> {
-    let kinds = [Kinematics::Small, Kinematics::Finite];
-    ALL.into_iter().flat_map(move |t| (1..=3).flat_map(move |p| kinds.map(|k| (t, p, k))))
-}
-
 /// Every condition at once: a driven side, a fixed one, gravity, a traction, and a flight that meets them.
 fn eventful(transfer: Transfer, degree: usize) -> Scene {
     let mut scene = scene(degree, [1.0, 1.0], [16, 16], [0.0, 0.49], [0.813, 1.0]);
@@ -84,21 +53,6 @@ fn the_ledger_of_finite_strains_closes_at_second_order_in_the_step_with_every_tr
         println!("{transfer:?}: closures {:.1e}, orders {orders:.2?}", closures[0]);
         assert!(closures[0] <= 1e-3, "{transfer:?}: closure {:e}", closures[0]);
         assert!(closures[2] <= 0.1 * closures[0], "{transfer:?}: {closures:?}");
-    }
-}
-
-#[test]
-fn momentum_is_kept_to_round_off_with_every_transfer() {
-    for (transfer, degree, kinematics) in every().filter(|(_, degree, _)| *degree > 1) {
-        let mut scene = scene(degree, [2.0, 2.0], [32, 32], [0.413, 0.531], [1.018, 1.003]);
-        scene.bodies[0].velocity = [0.3, 0.2];
-        scene.bodies[0].angular_velocity = 0.3;
-        scene.analysis = Analysis { kinematics, transfer, end_time: 2.0, ..scene.analysis };
-        let (_, samples) = run(&scene);
-        let first = samples[0].momentum;
-        let off = |s: &Sample| (s.momentum[0] - first[0]).hypot(s.momentum[1] - first[1]);
-        let worst = samples.iter().map(off).fold(0.0, larger) / first[0].hypot(first[1]);
-        assert!(worst <= 1e-12, "{transfer:?}, p = {degree}, {kinematics:?}: momentum off by {worst:e}");
     }
 }
 

@@ -19,7 +19,7 @@ use crate::study::scene::concerned;
 use crate::study::{INPUTS, Measurement, STUDIES, Study, find};
 
 /// Keys of a check that every study reads.
-const EVERYWHERE: [&str; 18] = [
+const EVERYWHERE: [&str; 19] = [
     "id",
     "formerly",
     "quantity",
@@ -32,6 +32,7 @@ const EVERYWHERE: [&str; 18] = [
     "uncertainty",
     "min",
     "max",
+    "within",
     "below",
     "above",
     "bounds",

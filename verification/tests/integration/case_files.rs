@@ -78,7 +78,7 @@ fn refused_by(study: &str, rest: &str, parts: &[&str]) {
 fn bounds_that_no_value_can_meet_or_that_count_from_nothing_are_refused() {
     let with = |more: &str| check("unity", &format!("{more}\nwhy = \"a reason\""));
     refused(&with("min = 2\nmax = 1"), &["min 2 is above max 1"]);
-    refused(&with("below = -1\nabove = 2"), &["below or above is negative"]);
+    refused(&with("below = -1\nabove = 2"), &["a distance from the reference is negative"]);
     refused(&with("max = 1\nbelow = 1\nabove = 2"), &["bounds of two kinds"]);
     refused(&with("from = 2\nto = 1"), &["to is before from"]);
     refused(&with("expect_source = \"a table\""), &["expect_source without expect"]);
