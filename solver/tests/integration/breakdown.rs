@@ -1,6 +1,6 @@
-//! A time step beyond the critical one breaks down in words; one below it lasts.
+//! What breaks a run down, in words, and what is only a warning.
 
-use crate::common::{closure_of_any_sample, driven_plate, elastic_scene, notched_plate, run};
+use crate::common::{driven_plate, elastic_scene, notched_plate, run};
 use fisura::Simulation;
 use fisura::scene::*;
 use fisura::simulation::breakdown::Breakdown;

@@ -2,9 +2,9 @@
 //! not change.
 
 use approx::assert_abs_diff_eq;
-use fisura::linear_algebra::extremes::{larger, smaller};
+use fisura::linear_algebra::extremes::smaller;
 use fisura::scene::Mesh;
-use fisura::splines::nurbs::{Form, LocateError, NurbsError, NurbsPatch, RationalFunctions, rational_functions};
+use fisura::splines::nurbs::{Form, LocateError, NurbsError, NurbsPatch, RationalFunctions};
 use fisura::splines::patch::Patch;
 use fisura::splines::spline::SplineSpace;
 use proptest::prelude::*;

@@ -6,7 +6,7 @@ use fisura::linear_algebra::extremes::larger;
 use fisura::scene::*;
 use fisura::validate::validate;
 
-use crate::common::{annulus, body, elastic_scene, patch_scene, rectangle, relative_closure, run};
+use crate::common::{annulus, elastic_scene, patch_scene, rectangle, relative_closure, run};
 
 fn slit(points: &[[f64; 2]]) -> Crack {
     Crack { points: points.to_vec(), kind: CrackKind::Slit }

@@ -1,5 +1,5 @@
 //! The spectral split against eigenvectors, on random strains and where eigenvalues coincide or vanish; every
-//! split against the slopes of its energies, turned frames, and closed forms of strength.
+//! split against the slopes of its energies, and turned frames.
 
 use crate::common::{glass, moduli};
 use fisura::linear_algebra::extremes::larger;

@@ -1,4 +1,4 @@
-//! Contact in the total frame: what is conserved, and what is not there before bodies meet.
+//! Contact in the total frame: what is told, and what is not there before bodies meet.
 
 use crate::common::{body, elastic_scene, glass, rectangle, run, unit_solid, updated_scene};
 use fisura::Simulation;

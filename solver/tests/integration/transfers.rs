@@ -6,9 +6,7 @@ use std::sync::Arc;
 
 use crate::common::standing_wave::StandingWave;
 use crate::common::{rectangle, relative_closure, run, unit_solid, updated_scene, with_threads};
-use fisura::dynamics::energy::Sample;
 use fisura::dynamics::updated_frame::UpdatedFrame;
-use fisura::linear_algebra::extremes::larger;
 use fisura::scene::*;
 use fisura::simulation::Simulation;
 

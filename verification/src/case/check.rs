@@ -28,37 +28,6 @@ pub enum Estimate {
     FinestMesh,
 }
 
-/// A key of a check that takes a formula in place of a number.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum NumberKey {
-    /// `from`
-    From,
-    /// `to`
-    To,
-    /// `at`
-    At,
-    /// `expect`
-    Expect,
-    /// `discretisation`
-    Discretisation,
-    /// `scale`
-    Scale,
-}
-
-impl NumberKey {
-    /// As it stands in a file.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::From => "from",
-            Self::To => "to",
-            Self::At => "at",
-            Self::Expect => "expect",
-            Self::Discretisation => "discretisation",
-            Self::Scale => "scale",
-        }
-    }
-}
-
 /// A check as it stands in the file, or a set of checks or one for each entry of a list, which are written
 /// out before it is read.
 #[derive(Deserialize, JsonSchema)]
@@ -74,7 +43,7 @@ pub(super) struct CheckTable {
     quantity: Option<Words>,
     /// Unit of the value; 1 if absent.
     unit: Option<String>,
-    /// The measure; absent where the study itself measures the quantity.
+    /// The measure, `final` if absent; a study other than `scene` measures the quantity itself.
     measure: Option<String>,
     /// Column of the history, or a formula of columns.
     column: Option<Column>,
@@ -180,7 +149,7 @@ pub(super) fn check(table: CheckTable, item: &Item<'_>) -> Option<Check> {
             .fail::<()>(format!("{key} together with the keys of one check"), "see \"Adding a case\" in the book");
     }
     let mut formulas = Vec::new();
-    let mut value = |key: NumberKey, amount: Option<Amount>| {
+    let mut value = |key: &'static str, amount: Option<Amount>| {
         amount.map(|amount| match amount {
             Amount::Given(value) => value,
             Amount::Formula(formula) => {
@@ -189,18 +158,18 @@ pub(super) fn check(table: CheckTable, item: &Item<'_>) -> Option<Check> {
             }
         })
     };
-    let from = value(NumberKey::From, table.from.as_ref().map(|time| time.0.clone()));
-    let to = value(NumberKey::To, table.to.as_ref().map(|time| time.0.clone()));
-    let at = value(NumberKey::At, table.at.as_ref().map(|at| at.0.clone()));
-    let expect = value(NumberKey::Expect, table.expect.as_ref().map(|expect| expect.0.clone()));
-    let scale = value(NumberKey::Scale, table.scale.as_ref().map(|scale| scale.0.clone()));
+    let from = value("from", table.from.as_ref().map(|time| time.0.clone()));
+    let to = value("to", table.to.as_ref().map(|time| time.0.clone()));
+    let at = value("at", table.at.as_ref().map(|at| at.0.clone()));
+    let expect = value("expect", table.expect.as_ref().map(|expect| expect.0.clone()));
+    let scale = value("scale", table.scale.as_ref().map(|scale| scale.0.clone()));
     if from.zip(to).is_some_and(|(from, to)| from > to) {
         item.at("to")?.fail::<()>("to is before from", "give the earlier time as from");
     }
     if let Some(given) = item.at("discretisation").filter(|_| table.meshes.is_some()) {
         given.fail::<()>("discretisation beside meshes, which give it", "remove one of the two");
     }
-    let discretisation = value(NumberKey::Discretisation, table.discretisation.as_ref().map(|error| error.0.clone()));
+    let discretisation = value("discretisation", table.discretisation.as_ref().map(|error| error.0.clone()));
     let of_expect = ["expect_kind", "expect_source", "expect_side", "uncertainty"];
     for given in of_expect.into_iter().filter(|_| expect.is_none()).filter_map(|key| item.at(key)) {
         let key = given.path.rsplit('.').next().unwrap_or_default();

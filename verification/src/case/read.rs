@@ -36,7 +36,8 @@ pub(super) struct CaseTable {
     tier: Tier,
     /// Estimated wall time on two cores, s: `seconds = 10`; 3 if absent.
     seconds: Option<Positive>,
-    /// The study that runs the case; `scene` runs its scene and measures the results.
+    /// The study that runs the case; `scene` runs its scene and measures the results. If absent, that of the
+    /// table `[convergence]` if there is one, otherwise `scene`.
     study: Option<String>,
     /// Label in figures.
     #[serde(default)]
@@ -124,7 +125,7 @@ pub(super) fn case(item: &Item<'_>, path: &Path, document: &Document) -> Option<
         claim: table.claim.0,
         tier: table.tier,
         seconds: table.seconds.map_or(3.0, |seconds| seconds.0),
-        study: table.study.unwrap_or("scene".into()),
+        study: table.study.unwrap_or(if convergence.is_some() { "convergence" } else { "scene" }.into()),
         label: table.label,
         energy_factor: table.energy_factor.map_or(1.0, |factor| factor.0),
         deviations: table.deviations,

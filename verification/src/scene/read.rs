@@ -46,7 +46,8 @@ fn scene(item: &Item<'_>) -> Option<Scene> {
     let mut materials = fields.or("material", BTreeMap::new(), materials);
     let frame = analysis.as_ref().map_or(Frame::Total, |analysis| analysis.frame);
     let degree = degree(item.node).unwrap_or([2; 2]);
-    let mut bodies = fields.or("body", Vec::new(), |item| bodies(item, frame, degree));
+    let only = materials.keys().next().filter(|_| materials.len() == 1).cloned();
+    let mut bodies = fields.or("body", Vec::new(), |item| bodies(item, only.as_deref(), frame, degree));
     let rule = (&bodies[..], frame, degree);
     let span = accuracy.and_then(|accuracy| choose_span(accuracy, &mut materials, rule, item.node));
     let is_read = !materials.is_empty() || fields.get("material").is_none();
@@ -55,7 +56,7 @@ fn scene(item: &Item<'_>) -> Option<Scene> {
         let message = "an accuracy in a scene without a material that can break: there is nothing to choose";
         item.fail::<()>(message, "remove accuracy, or add [material.NAME.fracture]");
     }
-    let mesh = fields.need("mesh", "a table [mesh] with degree, origin, size and cells", |item| mesh(item, span));
+    let mesh = fields.need("mesh", "a table [mesh] with size and cells", |item| mesh(item, span));
     let contact = fields.maybe("contact", |item| {
         item.table(|fields| {
             let friction = fields.need("friction", "friction = 0.65", number);

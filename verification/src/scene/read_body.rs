@@ -121,8 +121,8 @@ fn random(item: &Item<'_>) -> Option<RandomToughness> {
 }
 
 /// `[[body]]` tables in order, on a mesh of the given degrees.
-pub(super) fn bodies(item: &Item<'_>, frame: Frame, degree: [usize; 2]) -> Option<Vec<Body>> {
-    item.each_table(|item| body(item, default_points(frame, degree), default_layout(frame)))
+pub(super) fn bodies(item: &Item<'_>, only: Option<&str>, frame: Frame, degree: [usize; 2]) -> Option<Vec<Body>> {
+    item.each_table(|item| body(item, only, default_points(frame, degree), default_layout(frame)))
 }
 
 /// Where points keep their places in the spans, fewer than the degree leave modes nearly without stiffness.
@@ -141,10 +141,14 @@ fn default_layout(frame: Frame) -> Layout {
     }
 }
 
-fn body(item: &Item<'_>, default_points: [usize; 2], default_layout: Layout) -> Option<Body> {
+/// `only` is the name of the only material, if there is one.
+fn body(item: &Item<'_>, only: Option<&str>, default_points: [usize; 2], default_layout: Layout) -> Option<Body> {
     item.table(|fields| {
         let name = fields.need("name", "name = \"plate\"", Item::text);
-        let material = fields.need("material", "the name of a [material.NAME] table", Item::text);
+        let material = match only {
+            Some(only) => Some(fields.or("material", only.to_string(), Item::text)),
+            None => fields.need("material", "the name of a [material.NAME] table", Item::text),
+        };
         let shape_like = "shape = { rectangle = { min = [0.0, 0.0], max = [0.1, 0.04] } }";
         let shape = fields.need("shape", shape_like, shape);
         let rates = |item: &Item<'_>| item.pair(|row| row.vector(Dimension::RATE));

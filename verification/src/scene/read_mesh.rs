@@ -51,11 +51,11 @@ pub(super) fn mesh(item: &Item<'_>, longest: Option<f64>) -> Option<Mesh> {
             complete = extra.fail::<()>(format!("{key} cannot be used with {what}"), remedy).is_some();
         }
     }
-    let degree = fields.need("degree", "degree = 2", of_degree);
+    let degree = fields.or("degree", [2; 2], of_degree);
     match (form, complete) {
         (_, false) => None,
-        (Some("control_points"), _) => general(&fields, degree?),
-        (Some(_), _) => fields.get("annulus").and_then(|item| annulus(&item, &fields, degree?)),
+        (Some("control_points"), _) => general(&fields, degree),
+        (Some(_), _) => fields.get("annulus").and_then(|item| annulus(&item, &fields, degree)),
         (None, _) => rectangle(&fields, degree, longest),
     }
 }
@@ -69,8 +69,8 @@ fn of_degree(item: &Item<'_>) -> Option<[usize; 2]> {
     item.whole_per_direction(1, 4)
 }
 
-fn rectangle(fields: &Fields<'_>, degree: Option<[usize; 2]>, longest: Option<f64>) -> Option<Mesh> {
-    let origin = fields.need("origin", "origin = [0.0, 0.0] (m), the lower left corner", point);
+fn rectangle(fields: &Fields<'_>, degree: [usize; 2], longest: Option<f64>) -> Option<Mesh> {
+    let origin = fields.or("origin", [0.0; 2], point);
     let size = fields.need("size", "size = [0.1, 0.04] (m), width and height", size);
     let knots = fields.maybe("knots", |item| item.pair(|direction| direction.each(length)));
     let halvings = fields.or("refine", 0, |item| {
@@ -93,7 +93,7 @@ fn rectangle(fields: &Fields<'_>, degree: Option<[usize; 2]>, longest: Option<f6
         None => Some(fields.or("subdivide", 1, |item| item.whole(1, MOST_CELLS))),
     };
     let ends = long_ends(fields);
-    let (degree, origin, size, cells, parts) = (degree?, origin?, size?, cells?, parts?);
+    let (size, cells, parts) = (size?, cells?, parts?);
     let mut mesh = match knots {
         None => Mesh::uniform(degree, origin, size, cells),
         Some(knots) => graded(fields, degree, origin, size, knots, parts)?,

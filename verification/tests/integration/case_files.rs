@@ -119,7 +119,7 @@ fn what_a_study_does_not_read_or_measure_is_refused_before_it_runs() {
 fn what_no_run_of_a_scene_has_is_refused_before_it_runs() {
     let of = |lines: &str| format!("{}\n{}", SCENE, quantity("q", lines));
     for (lines, parts) in [
-        ("", &["check.0.measure", "name a measure"][..]),
+        ("", &["the measure \"final\" needs column", "add column"][..]),
         ("measure = \"closuer\"", &["unknown measure"]),
         ("measure = \"closure\"\nvariant = \"none\"", &["no run of this case"]),
         ("measure = \"closure\"\nmax = 1.0", &["bounds without a reason"]),

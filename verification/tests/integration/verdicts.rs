@@ -9,7 +9,9 @@ use crate::support::{SCENE, run, write_case};
 /// throughout.
 fn flight() -> String {
     let scene = SCENE.replace("cells = [8, 4]", "cells = [[2, 1], [4, 2], [8, 4]]");
-    scene.replace("end_time = 1.0", "end_time = 0.1").replace("[[scene.boundary]]\nside = \"left\"\nfix = [\"x\"]\n", "")
+    scene
+        .replace("end_time = 1.0", "end_time = 0.1")
+        .replace("[[scene.boundary]]\nside = \"left\"\nfix = [\"x\"]\n", "")
 }
 
 const CHECK: &str =
