@@ -1,5 +1,4 @@
-//! Cohesive cracks: strength, stability at the onset, where damage is the least energy, the ledger, what is
-//! refused.
+//! Cohesive cracks: strength, stability at the onset, where damage is the least energy, and what is refused.
 
 use fisura::linear_algebra::extremes::{larger, smaller};
 use fisura::linear_algebra::lane::Lane;
@@ -12,7 +11,7 @@ use fisura::scene::*;
 use fisura::splines::patch::Patch;
 use fisura::validate::validate;
 
-use crate::common::{elastic_scene, make_cohesive, notched_plate, relative_closure, run};
+use crate::common::{elastic_scene, make_cohesive, notched_plate, run};
 
 const L0: f64 = 0.25e-3;
 const SOFTENINGS: [Softening; 3] = [Softening::Linear, Softening::Exponential, Softening::Cornelissen];
@@ -120,29 +119,6 @@ fn damage_is_stationary_between_its_bounds() {
 fn c_index(lattice: &Lattice, batch: usize, lane: usize) -> [usize; 2] {
     let (row, tile, ..) = lattice.unbatch(batch);
     [lattice.tiles[tile].first + lane, lattice.rows[row].first]
-}
-
-#[test]
-fn the_ledger_closes_with_the_square_of_the_step() {
-    for (softening, split) in [
-        (Softening::Linear, Split::Rankine),
-        (Softening::Cornelissen, Split::Spectral),
-        (Softening::Exponential, Split::StarConvex(3.0)),
-    ] {
-        let closure = |safety: f64| {
-            let mut scene = cracking(softening, split);
-            scene.analysis.safety = safety;
-            let (_, samples) = run(&scene);
-            let end = samples.last().unwrap().fracture.clone().unwrap();
-            assert!(end.energy > 1.2 * samples[0].fracture.as_ref().unwrap().energy, "{split:?}: it cracks");
-            let columns: Vec<_> = end.works.iter().map(|(name, _)| *name).collect();
-            let expected = ["driving_work_j", "phase_field_bounds_j"];
-            assert_eq!(columns, expected[usize::from(split == Split::Spectral)..], "{split:?}");
-            relative_closure(&samples)
-        };
-        let [coarse, fine] = [0.8, 0.4].map(closure);
-        assert!(coarse < 5e-4 && fine < 0.4 * coarse, "{split:?}: {coarse:e}, {fine:e} with half the step");
-    }
 }
 
 #[test]

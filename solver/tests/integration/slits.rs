@@ -22,32 +22,6 @@ fn pulled(degree: usize, points: &[[f64; 2]]) -> Scene {
     scene
 }
 
-/// Largest speed of the points below a line through the middle with this slope.
-fn speed_below(simulation: &Simulation, slope: f64) -> f64 {
-    let mut most = 0.0_f64;
-    simulation.for_each_point(&mut |point| {
-        if point.position[1] < 0.005 + slope * (point.position[0] - 0.005) - 1e-6 {
-            most = larger(most, point.velocity[0].hypot(point.velocity[1]));
-        }
-    });
-    most
-}
-
-#[test]
-fn what_a_slit_cuts_off_stays_at_rest() {
-    for degree in [1, 2, 3] {
-        for slope in [0.0, 0.3, -0.77, 1.0].into_iter().filter(|slope| degree > 1 || *slope == 0.0) {
-            let end = |x: f64| [x, 0.005 + slope * (x - 0.005)];
-            let scene = pulled(degree, &[end(0.0), end(0.004), end(0.01)]);
-            let (simulation, samples) = run(&scene);
-            let what = format!("p = {degree}, slope {slope}");
-            assert_eq!(speed_below(&simulation, slope), 0.0, "{what}");
-            assert!(samples.last().unwrap().kinetic > 0.0, "{what}");
-            assert!(relative_closure(&samples) < 1e-9, "{what}: {:e}", relative_closure(&samples));
-        }
-    }
-}
-
 /// Restricted to one side of a knot line, splines are all splines there: the static state is that of a body
 /// that ends at the line.
 #[test]

@@ -144,13 +144,10 @@ fn default_layout(frame: Frame) -> Layout {
 /// `only` is the name of the only material, if there is one.
 fn body(item: &Item<'_>, only: Option<&str>, default_points: [usize; 2], default_layout: Layout) -> Option<Body> {
     item.table(|fields| {
-        let name = fields.need("name", "name = \"plate\"", Item::text);
         let material = match only {
             Some(only) => Some(fields.or("material", only.to_string(), Item::text)),
             None => fields.need("material", "the name of a [material.NAME] table", Item::text),
         };
-        let shape_like = "shape = { rectangle = { min = [0.0, 0.0], max = [0.1, 0.04] } }";
-        let shape = fields.need("shape", shape_like, shape);
         let rates = |item: &Item<'_>| item.pair(|row| row.vector(Dimension::RATE));
         Some(Body {
             particles_per_cell: fields.or("particles_per_cell", default_points, |item| item.whole_per_direction(1, 16)),
@@ -163,9 +160,9 @@ fn body(item: &Item<'_>, only: Option<&str>, default_points: [usize; 2], default
             tractions: fields.or("traction", Vec::new(), |item| item.each_table(traction)),
             conditions: fields.or("condition", Vec::new(), |item| item.each_table(edge_condition)),
             cracks: fields.or("crack", Vec::new(), |item| item.each_table(crack)),
-            name: name?,
+            shape: fields.or("shape", Shape::Patch, shape),
+            name: fields.or("name", "body".to_string(), Item::text),
             material: material?,
-            shape: shape?,
         })
     })
 }
