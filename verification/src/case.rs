@@ -18,7 +18,7 @@ mod rings;
 mod value;
 
 pub use chart::{Chart, ChartCurve};
-pub use check::{Estimate, NumberKey};
+pub use check::Estimate;
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -120,8 +120,8 @@ pub struct Check {
     pub shown: Option<String>,
     /// Documented limit, in which a value may lie that does not agree with its reference.
     pub limit: Option<Limit>,
-    /// Numbers that a formula gives for every run; until then they are not a number above.
-    pub formulas: Vec<(NumberKey, Formula)>,
+    /// Numbers that a formula gives for every run, by key; until then they are not a number above.
+    pub formulas: Vec<(&'static str, Formula)>,
 }
 
 impl Check {
@@ -146,14 +146,15 @@ impl Check {
     ) -> Result<Self, (&'static str, String)> {
         let mut check = self.clone();
         for (key, formula) in &self.formulas {
-            let value = value(formula).map_err(|message| (key.name(), message))?;
-            match key {
-                NumberKey::From => check.window[0] = value,
-                NumberKey::To => check.window[1] = value,
-                NumberKey::At => check.at = Some(value),
-                NumberKey::Expect => check.expect = Some(value),
-                NumberKey::Discretisation => check.discretisation = Some(value),
-                NumberKey::Scale => check.scale = value,
+            let value = value(formula).map_err(|message| (*key, message))?;
+            match *key {
+                "from" => check.window[0] = value,
+                "to" => check.window[1] = value,
+                "at" => check.at = Some(value),
+                "expect" => check.expect = Some(value),
+                "discretisation" => check.discretisation = Some(value),
+                "scale" => check.scale = value,
+                other => unreachable!("{other} takes no formula"),
             }
         }
         Ok(check)

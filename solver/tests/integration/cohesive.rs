@@ -1,5 +1,4 @@
-//! Cohesive cracks: strength, stability at the onset, where damage is the least energy, the ledger, what is
-//! refused.
+//! Cohesive cracks: strength, stability at the onset, where damage is the least energy, and what is refused.
 
 use fisura::linear_algebra::extremes::{larger, smaller};
 use fisura::linear_algebra::lane::Lane;
@@ -12,8 +11,7 @@ use fisura::scene::*;
 use fisura::splines::patch::Patch;
 use fisura::validate::validate;
 
-use crate::at1::{cost, cost_on_a_line, seeded_strip};
-use crate::common::{elastic_scene, make_cohesive, notched_plate, relative_closure, run};
+use crate::common::{elastic_scene, make_cohesive, notched_plate, run};
 
 const L0: f64 = 0.25e-3;
 const SOFTENINGS: [Softening; 3] = [Softening::Linear, Softening::Exponential, Softening::Cornelissen];
@@ -23,26 +21,6 @@ fn cracking(softening: Softening, split: Split) -> Scene {
     make_cohesive(&mut scene, 7.5e6, softening, split);
     scene.analysis.end_time = 8e-6;
     scene
-}
-
-/// In the limit d = 1 − sin(|x|/b), which costs Gc.
-#[test]
-fn a_seed_costs_what_it_costs_on_a_line_and_in_the_limit_gc() {
-    for (degree, place) in [(1, 0.0), (1, 0.4), (2, 0.0), (2, 0.5), (3, 0.0), (3, 0.3), (4, 0.5)] {
-        let excess = |spans_of_l0: f64| {
-            let mut scene = seeded_strip(degree, spans_of_l0, place);
-            let [x, _] = scene.bodies[0].cracks[0].points[0];
-            make_cohesive(&mut scene, 7.5e6, Softening::Linear, Split::Rankine);
-            scene.bodies[0].particles_per_cell = [degree + 1; 2];
-            let cost = cost(&scene);
-            let on_line = cost_on_a_line(degree, &scene.mesh.knots[0], x, std::f64::consts::FRAC_1_PI, 2.0);
-            assert!((cost - on_line).abs() < 1e-6, "p = {degree}, {spans_of_l0}, {place}: {cost} and {on_line}");
-            cost - 1.0
-        };
-        let costs = [4.0, 8.0].map(excess);
-        let order = (costs[0] / costs[1]).log2();
-        assert!((order - 1.0).abs() < 0.1 && costs[1] > 0.0, "p = {degree}, {place}: {costs:?}, order {order}");
-    }
 }
 
 /// c of a body under the same driving energy everywhere, of its threshold, step by step.
@@ -141,29 +119,6 @@ fn damage_is_stationary_between_its_bounds() {
 fn c_index(lattice: &Lattice, batch: usize, lane: usize) -> [usize; 2] {
     let (row, tile, ..) = lattice.unbatch(batch);
     [lattice.tiles[tile].first + lane, lattice.rows[row].first]
-}
-
-#[test]
-fn the_ledger_closes_with_the_square_of_the_step() {
-    for (softening, split) in [
-        (Softening::Linear, Split::Rankine),
-        (Softening::Cornelissen, Split::Spectral),
-        (Softening::Exponential, Split::StarConvex(3.0)),
-    ] {
-        let closure = |safety: f64| {
-            let mut scene = cracking(softening, split);
-            scene.analysis.safety = safety;
-            let (_, samples) = run(&scene);
-            let end = samples.last().unwrap().fracture.clone().unwrap();
-            assert!(end.energy > 1.2 * samples[0].fracture.as_ref().unwrap().energy, "{split:?}: it cracks");
-            let columns: Vec<_> = end.works.iter().map(|(name, _)| *name).collect();
-            let expected = ["driving_work_j", "phase_field_bounds_j"];
-            assert_eq!(columns, expected[usize::from(split == Split::Spectral)..], "{split:?}");
-            relative_closure(&samples)
-        };
-        let [coarse, fine] = [0.8, 0.4].map(closure);
-        assert!(coarse < 5e-4 && fine < 0.4 * coarse, "{split:?}: {coarse:e}, {fine:e} with half the step");
-    }
 }
 
 #[test]

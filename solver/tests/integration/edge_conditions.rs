@@ -105,34 +105,6 @@ fn a_driven_end_beside_the_mesh_is_one_on_its_side() {
     }
 }
 
-/// To 1 %: the case `energy/driven-edge` has 0.3 % at 40 degrees and the orders.
-#[test]
-fn a_driven_end_at_any_angle_pushes_with_the_impedance_of_the_bar() {
-    for (angle, hold) in [(0.2, Hold::Normal), (2.1, Hold::Components([true, true])), (1.3, Hold::Normal)] {
-        let (sin, cos) = f64::sin_cos(angle);
-        let mut scene = elastic_scene(2, [0.02; 2], [40; 2]);
-        scene.materials.get_mut("glass").unwrap().poisson_ratio = 0.0;
-        let corners: Vec<_> = turned([0.018, 0.003], angle, 0.0).iter().map(|[x, y]| [x + 0.005, y + 0.005]).collect();
-        scene.bodies[0].shape = Shape::Polygon { points: corners.clone() };
-        scene.bodies[0].particles_per_cell = [3, 3];
-        let motion = Motion::Velocity([2.0 * cos, 2.0 * sin]);
-        let prescribed = Prescribed { motion, time: TimeFactor { course: Course::Smooth(2e-6), until: None } };
-        let end = Edge::Segment([corners[3], corners[0]]);
-        scene.bodies[0].conditions = vec![EdgeCondition { prescribed, ..named("end", end, hold) }];
-        scene.analysis.end_time = 4e-6;
-        scene.output.samples = 40;
-        let samples = run(&scene).1;
-        assert!(relative_closure(&samples) < 1e-11, "closure {:e}", relative_closure(&samples));
-        let [x, y] = ["x", "y"].map(|d| column(&samples, &format!("reaction_end_{d}_n")));
-        let glass = &scene.materials["glass"];
-        let exact = 2.0 * (glass.young_modulus * glass.density).sqrt() * 0.003;
-        assert_relative_eq!(x[40] * cos + y[40] * sin, exact, max_relative = 0.01);
-        assert_relative_eq!(x[40] * sin - y[40] * cos, 0.0, epsilon = 0.01 * exact);
-        let work = column(&samples, "work_end_j");
-        assert_relative_eq!(work[40], samples[40].external_work, max_relative = 1e-12);
-    }
-}
-
 /// Bodies at random places with the edges on which they are held.
 fn random_bodies(random: &mut Random) -> Vec<(Shape, Vec<Edge>)> {
     let mut number = |size: f64| size * random.next();

@@ -3,7 +3,6 @@
 use approx::assert_relative_eq;
 use fisura::Simulation;
 use fisura::linear_algebra::extremes::larger;
-use fisura::scene::time::Course;
 use fisura::scene::*;
 
 use crate::common::{brittle, elastic_scene, relative_closure, run};
@@ -29,14 +28,6 @@ fn a_body_in_equilibrium_stays_at_rest() {
         assert!(moving < 1e-16 * samples[0].elastic, "p = {degree}: {moving:e} of {:e}", samples[0].elastic);
         assert!(simulation.total_frame().unwrap().displacement[1].iter().any(|u| *u > 0.0));
     }
-}
-
-#[test]
-fn a_load_that_ends_sets_the_body_free_and_the_ledger_closes() {
-    let until = Some(1e-6);
-    let samples = run(&pulled(2, TimeFactor { course: Course::Constant, until })).1;
-    assert!(samples.last().unwrap().kinetic > 0.1 * samples[0].elastic);
-    assert!(relative_closure(&samples) < 1e-9, "{:e}", relative_closure(&samples));
 }
 
 #[test]

@@ -6,7 +6,7 @@ use fisura::linear_algebra::extremes::larger;
 use fisura::scene::*;
 use fisura::validate::validate;
 
-use crate::common::{annulus, body, elastic_scene, patch_scene, rectangle, relative_closure, run};
+use crate::common::{annulus, elastic_scene, patch_scene, rectangle, relative_closure, run};
 
 fn slit(points: &[[f64; 2]]) -> Crack {
     Crack { points: points.to_vec(), kind: CrackKind::Slit }
@@ -20,32 +20,6 @@ fn pulled(degree: usize, points: &[[f64; 2]]) -> Scene {
     scene.bodies[0].tractions = vec![load];
     assert!(validate(&scene).is_ok(), "{:?}", validate(&scene));
     scene
-}
-
-/// Largest speed of the points below a line through the middle with this slope.
-fn speed_below(simulation: &Simulation, slope: f64) -> f64 {
-    let mut most = 0.0_f64;
-    simulation.for_each_point(&mut |point| {
-        if point.position[1] < 0.005 + slope * (point.position[0] - 0.005) - 1e-6 {
-            most = larger(most, point.velocity[0].hypot(point.velocity[1]));
-        }
-    });
-    most
-}
-
-#[test]
-fn what_a_slit_cuts_off_stays_at_rest() {
-    for degree in [1, 2, 3] {
-        for slope in [0.0, 0.3, -0.77, 1.0].into_iter().filter(|slope| degree > 1 || *slope == 0.0) {
-            let end = |x: f64| [x, 0.005 + slope * (x - 0.005)];
-            let scene = pulled(degree, &[end(0.0), end(0.004), end(0.01)]);
-            let (simulation, samples) = run(&scene);
-            let what = format!("p = {degree}, slope {slope}");
-            assert_eq!(speed_below(&simulation, slope), 0.0, "{what}");
-            assert!(samples.last().unwrap().kinetic > 0.0, "{what}");
-            assert!(relative_closure(&samples) < 1e-9, "{what}: {:e}", relative_closure(&samples));
-        }
-    }
 }
 
 /// Restricted to one side of a knot line, splines are all splines there: the static state is that of a body
@@ -83,23 +57,6 @@ fn a_slit_in_a_body_at_rest_changes_no_mass_and_no_stress_beside_it() {
     }
     let grid = &simulation.total_frame().unwrap().lattice;
     assert!(grid.grid.rows > grid.patch_grid.rows, "there are copies");
-}
-
-#[test]
-fn a_gap_narrower_than_a_support_is_not_bridged() {
-    for degree in [1, 2, 3] {
-        let mut scene = pulled(degree, &[[0.0, 0.005], [0.01, 0.005]]);
-        scene.bodies[0].cracks.clear();
-        let gap = rectangle([-1.0, 0.005], [1.0, 0.005 + 0.01 / 12.0]);
-        scene.bodies[0] = Body {
-            shape: Shape::Difference { of: Box::new(rectangle([0.0; 2], [0.01; 2])), minus: vec![gap] },
-            ..body(Shape::Patch, [degree.max(2); 2])
-        };
-        let ends = [[0.0, 0.01], [0.01, 0.01]];
-        let load = Traction { edge: Edge::Segment(ends), load: Load::Stress([0.0, 1e6]), time: TimeFactor::ramp(1e-6) };
-        scene.bodies[0].tractions = vec![load];
-        assert_eq!(speed_below(&run(&scene).0, 0.0), 0.0, "p = {degree}");
-    }
 }
 
 /// The material beyond a gap that is much thinner than the distance of points, of every kind of boundary.

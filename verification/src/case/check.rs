@@ -12,6 +12,7 @@ use super::formula::Amount;
 use super::value::{AnyAmount, Column, Factor, Id, Quantity, Time, Uncertainty, Words, identifier};
 use crate::record::{Accept, Limit, ReferenceKind, Side};
 use crate::scene::fields::Item;
+use crate::scene::units::{self, Dimension};
 
 /// What a check makes of the values of its measure on all meshes: the key `meshes`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
@@ -25,37 +26,6 @@ pub enum Estimate {
     GridConvergenceIndex,
     /// The value on the finest mesh, with its numerical uncertainty.
     FinestMesh,
-}
-
-/// A key of a check that takes a formula in place of a number.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum NumberKey {
-    /// `from`
-    From,
-    /// `to`
-    To,
-    /// `at`
-    At,
-    /// `expect`
-    Expect,
-    /// `discretisation`
-    Discretisation,
-    /// `scale`
-    Scale,
-}
-
-impl NumberKey {
-    /// As it stands in a file.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::From => "from",
-            Self::To => "to",
-            Self::At => "at",
-            Self::Expect => "expect",
-            Self::Discretisation => "discretisation",
-            Self::Scale => "scale",
-        }
-    }
 }
 
 /// A check as it stands in the file, or a set of checks or one for each entry of a list, which are written
@@ -73,7 +43,7 @@ pub(super) struct CheckTable {
     quantity: Option<Words>,
     /// Unit of the value; 1 if absent.
     unit: Option<String>,
-    /// The measure; absent where the study itself measures the quantity.
+    /// The measure, `final` if absent; a study other than `scene` measures the quantity itself.
     measure: Option<String>,
     /// Column of the history, or a formula of columns.
     column: Option<Column>,
@@ -97,7 +67,7 @@ pub(super) struct CheckTable {
     uncertainty: Option<Uncertainty>,
     /// Discretisation error of the value as a formula, an order and a constant: `"= 0.6*span/radius"`.
     discretisation: Option<AnyAmount>,
-    /// Factor from the measured to the reported unit.
+    /// Factor from the measured to the reported unit; absent: that from SI to a unit of time or length.
     scale: Option<Factor>,
     /// Reference band that gives the bounds: `band = "folder/name"`.
     band: Option<String>,
@@ -113,9 +83,11 @@ pub(super) struct CheckTable {
     min: Option<Quantity>,
     /// Largest value, with the reason in `why`.
     max: Option<Quantity>,
-    /// How far below its reference the value may lie.
+    /// How far from its reference the value may lie, on either side.
+    within: Option<Quantity>,
+    /// How far below its reference the value may lie, if not `within`.
     below: Option<Quantity>,
-    /// How far above its reference the value may lie.
+    /// How far above its reference the value may lie, if not `within`.
     above: Option<Quantity>,
     /// `regression`: bounds chosen after the result.
     bounds: Option<Bounds>,
@@ -177,7 +149,7 @@ pub(super) fn check(table: CheckTable, item: &Item<'_>) -> Option<Check> {
             .fail::<()>(format!("{key} together with the keys of one check"), "see \"Adding a case\" in the book");
     }
     let mut formulas = Vec::new();
-    let mut value = |key: NumberKey, amount: Option<Amount>| {
+    let mut value = |key: &'static str, amount: Option<Amount>| {
         amount.map(|amount| match amount {
             Amount::Given(value) => value,
             Amount::Formula(formula) => {
@@ -186,18 +158,18 @@ pub(super) fn check(table: CheckTable, item: &Item<'_>) -> Option<Check> {
             }
         })
     };
-    let from = value(NumberKey::From, table.from.as_ref().map(|time| time.0.clone()));
-    let to = value(NumberKey::To, table.to.as_ref().map(|time| time.0.clone()));
-    let at = value(NumberKey::At, table.at.as_ref().map(|at| at.0.clone()));
-    let expect = value(NumberKey::Expect, table.expect.as_ref().map(|expect| expect.0.clone()));
-    let scale = value(NumberKey::Scale, table.scale.as_ref().map(|scale| scale.0.clone()));
+    let from = value("from", table.from.as_ref().map(|time| time.0.clone()));
+    let to = value("to", table.to.as_ref().map(|time| time.0.clone()));
+    let at = value("at", table.at.as_ref().map(|at| at.0.clone()));
+    let expect = value("expect", table.expect.as_ref().map(|expect| expect.0.clone()));
+    let scale = value("scale", table.scale.as_ref().map(|scale| scale.0.clone()));
     if from.zip(to).is_some_and(|(from, to)| from > to) {
         item.at("to")?.fail::<()>("to is before from", "give the earlier time as from");
     }
     if let Some(given) = item.at("discretisation").filter(|_| table.meshes.is_some()) {
         given.fail::<()>("discretisation beside meshes, which give it", "remove one of the two");
     }
-    let discretisation = value(NumberKey::Discretisation, table.discretisation.as_ref().map(|error| error.0.clone()));
+    let discretisation = value("discretisation", table.discretisation.as_ref().map(|error| error.0.clone()));
     let of_expect = ["expect_kind", "expect_source", "expect_side", "uncertainty"];
     for given in of_expect.into_iter().filter(|_| expect.is_none()).filter_map(|key| item.at(key)) {
         let key = given.path.rsplit('.').next().unwrap_or_default();
@@ -207,11 +179,11 @@ pub(super) fn check(table: CheckTable, item: &Item<'_>) -> Option<Check> {
     let accept = accept(&table, item);
     let limit = table.limit.map(|limited| limit(limited, &table.why, &item.at("limit").expect("it is read")));
     let quantity = table.quantity?.0;
+    let unit = table.unit.unwrap_or("1".into());
     Some(Check {
         id: table.id.map_or_else(|| identifier(&quantity), |id| id.0),
         formerly: table.formerly.into_iter().map(|id| id.0).collect(),
         quantity,
-        unit: table.unit.unwrap_or("1".into()),
         measure: table.measure,
         column: table.column.map(|column| column.0),
         reference: table.reference,
@@ -222,7 +194,8 @@ pub(super) fn check(table: CheckTable, item: &Item<'_>) -> Option<Check> {
         expect_source: table.expect_source.unwrap_or_default(),
         expect_side: table.expect_side.unwrap_or_default(),
         uncertainty: table.uncertainty.map(|uncertainty| uncertainty.0),
-        scale: scale.unwrap_or(1.0),
+        scale: scale.unwrap_or_else(|| per_si(&unit)),
+        unit,
         band: table.band,
         variant: table.variant,
         against: table.against,
@@ -258,23 +231,29 @@ fn limit(table: LimitTable, reason: &str, item: &Item<'_>) -> Option<Limit> {
     Some(Limit { min, max, why, regression: bounds.is_some() })
 }
 
-/// `below = 0.1, above = 0.5`: bounds around the reference value.
+/// `within = 0.1`, or `below = 0.1, above = 0.5`: bounds around the reference value.
 fn around(table: &CheckTable, item: &Item<'_>) -> Option<Option<[f64; 2]>> {
-    match (&table.below, &table.above) {
-        (None, None) => Some(None),
-        (Some(below), Some(above)) if below.0 >= 0.0 && above.0 >= 0.0 => Some(Some([below.0, above.0])),
-        (Some(_), Some(_)) => {
-            item.at("below")?.fail("below or above is negative", "give the allowed distance on each side")
-        }
+    let side = |own: &Option<Quantity>| own.as_ref().or(table.within.as_ref()).map(|distance| distance.0);
+    match [side(&table.below), side(&table.above)] {
+        [None, None] => Some(None),
+        [Some(below), Some(above)] if below >= 0.0 && above >= 0.0 => Some(Some([below, above])),
+        [Some(_), Some(_)] => item.fail("a distance from the reference is negative", "give that allowed on each side"),
         _ => item.fail("one of below and above is missing", "give both distances from the reference value"),
     }
+}
+
+/// How many of a unit make one of SI, which measures give, if it is one of time or length.
+fn per_si(unit: &str) -> f64 {
+    let one = units::parse(&format!("1 {unit}")).ok();
+    let one = one.filter(|one| [Dimension::TIME, Dimension::LENGTH].contains(&one.dimension));
+    one.map_or(1.0, |one| 1.0 / one.value)
 }
 
 /// Bounds need a reason, and there are none beside an uncertainty, which bounds the value itself.
 fn accept(table: &CheckTable, item: &Item<'_>) -> Option<Accept> {
     let bound = |quantity: &Option<Quantity>| quantity.as_ref().map(|bound| bound.0);
     let (min, max, regression) = (bound(&table.min), bound(&table.max), table.bounds.is_some());
-    let around = table.below.is_some() || table.above.is_some();
+    let around = [&table.within, &table.below, &table.above].into_iter().any(Option::is_some);
     let own = min.is_some() || max.is_some();
     if [own, around, table.band.is_some()].into_iter().filter(|kind| *kind).count() > 1 {
         return item.fail("bounds of two kinds", "give min and max, or below and above, or band");
@@ -287,7 +266,7 @@ fn accept(table: &CheckTable, item: &Item<'_>) -> Option<Accept> {
     let bounded = own || around;
     let computed = table.uncertainty.is_some() || table.discretisation.is_some();
     if bounded && computed {
-        let remedy = "remove min, max, below and above, or write them as limit = { max = …, why = \"…\" }";
+        let remedy = "remove min, max, within, below and above, or write them as limit = { max = …, why = \"…\" }";
         return item.fail("bounds in addition to those of the uncertainty", remedy);
     }
     if (bounded || regression || table.discretisation.is_some()) && table.why.trim().is_empty() {

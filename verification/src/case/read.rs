@@ -34,9 +34,10 @@ pub(super) struct CaseTable {
     /// How much a run may cost.
     #[serde(default)]
     tier: Tier,
-    /// Estimated wall time on two cores, s: `seconds = 10`.
-    seconds: Positive,
-    /// The study that runs the case; `scene` runs its scene and measures the results.
+    /// Estimated wall time on two cores, s: `seconds = 10`; 3 if absent.
+    seconds: Option<Positive>,
+    /// The study that runs the case; `scene` runs its scene and measures the results. If absent, that of the
+    /// table `[convergence]` if there is one, otherwise `scene`.
     study: Option<String>,
     /// Label in figures.
     #[serde(default)]
@@ -85,7 +86,8 @@ struct VariantTable {
     set: BTreeMap<String, IgnoredAny>,
     /// Energies of this run times this are those of the whole body, if not those of the case.
     energy_factor: Option<Positive>,
-    /// A variant for each entry: `each = [{ name = "p=3", set = { "mesh.degree" = 3 } }]`.
+    /// A variant for each entry: `each = [{ name = "p=3", set = { "mesh.degree" = 3 } }]`; lists in the list
+    /// are combined, with names put together.
     #[schemars(with = "Option<Vec<Map<String, Value>>>")]
     #[expect(dead_code, reason = "it is written out before")]
     each: Option<IgnoredAny>,
@@ -122,8 +124,8 @@ pub(super) fn case(item: &Item<'_>, path: &Path, document: &Document) -> Option<
         path: path.to_path_buf(),
         claim: table.claim.0,
         tier: table.tier,
-        seconds: table.seconds.0,
-        study: table.study.unwrap_or("scene".into()),
+        seconds: table.seconds.map_or(3.0, |seconds| seconds.0),
+        study: table.study.unwrap_or(if convergence.is_some() { "convergence" } else { "scene" }.into()),
         label: table.label,
         energy_factor: table.energy_factor.map_or(1.0, |factor| factor.0),
         deviations: table.deviations,

@@ -226,10 +226,16 @@ fn id_of(check: &Node) -> Option<String> {
     given.or_else(|| Some(identifier(check.get("quantity")?.as_str()?)))
 }
 
-/// Puts entries into a table, in place of those of the same key.
+/// Puts entries into a table, in place of those of the same key; names of variants, and what they set, are
+/// put together.
 fn put(node: &mut Node, entries: &Table) {
-    if let Value::Table(table) = &mut node.value {
-        table.extend(entries.iter().map(|(key, entry)| (key.clone(), entry.clone())));
+    let Value::Table(table) = &mut node.value else { return };
+    for (key, entry) in entries {
+        match (key.as_str(), table.get_mut(key).map(|node| &mut node.value), &entry.value) {
+            ("name", Some(Value::String(name)), Value::String(more)) => name.push_str(more),
+            ("set", Some(Value::Table(all)), Value::Table(more)) => all.extend(more.clone()),
+            _ => drop(table.insert(key.clone(), entry.clone())),
+        }
     }
 }
 

@@ -64,9 +64,7 @@ pub(super) fn curves(item: &Item<'_>, thickness: Option<f64>) -> Option<Curves> 
         return given.fail("this key belongs to a format", "add format = \"moose\", or give it with every curve");
     }
     let time = fields.need("time", "time = { column = \"t\", unit = \"us\" }", |item| mapping(item, "time", None));
-    let curves = QUANTITIES.map(|q| fields.maybe(q.key, |item| mapping(item, q.key, thickness)));
-    let curves: Vec<Option<Mapping>> = curves.into_iter().collect::<Option<_>>()?;
-    Some((Some(time?), curves.try_into().ok()?))
+    Some((Some(time?), QUANTITIES.map(|q| fields.maybe(q.key, |item| mapping(item, q.key, thickness)))))
 }
 
 fn mapping(item: &Item<'_>, key: &str, thickness: Option<f64>) -> Option<Mapping> {
@@ -86,17 +84,17 @@ fn mapping(item: &Item<'_>, key: &str, thickness: Option<f64>) -> Option<Mapping
     let offset = fields.or("offset", 0.0, |item| item.quantity(Dimension::NONE));
     let missing = fields.maybe("missing", |item| item.quantity(Dimension::NONE));
     let increment = fields.or("form", false, |item| item.choice(&[("absolute", false), ("increment", true)]));
-    let (unit, factor) = (unit?, factor?);
+    let unit = unit?;
     Some(Mapping {
         key: item.path.clone(),
         location: item.node.location.clone(),
         file: file?,
         column: column?,
         scale: unit * factor,
-        offset: offset? * unit,
+        offset: offset * unit,
         factor,
-        missing: missing?,
-        increment: increment?,
+        missing,
+        increment,
     })
 }
 
@@ -120,13 +118,12 @@ fn of_moose(fields: &Fields<'_>, thickness: Option<f64>) -> Option<Curves> {
         missing: None,
         increment: false,
     };
-    let curve = |q: &super::Quantity| {
-        let given = fields.maybe(q.key, |item| mapping(item, q.key, thickness))?;
+    let curve = |q: super::Quantity| {
+        let given = fields.maybe(q.key, |item| mapping(item, q.key, thickness));
         let found = OF_MOOSE.iter().find(|(key, _)| *key == q.key);
-        Some(given.or_else(|| found.map(|(_, names)| column(names, joules))))
+        given.or_else(|| found.map(|(_, names)| column(names, joules)))
     };
-    let curves: Vec<Option<Mapping>> = QUANTITIES.iter().map(curve).collect::<Option<_>>()?;
-    Some((Some(column(&["time"], seconds)), curves.try_into().ok()?))
+    Some((Some(column(&["time"], seconds)), QUANTITIES.map(curve)))
 }
 
 /// A file in the folder of the submission.

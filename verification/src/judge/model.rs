@@ -90,77 +90,56 @@ impl Model {
     }
 }
 
-const MODEL: [&str; 13] = [
-    "plane",
-    "traction",
-    "crack",
-    "split",
-    "phase_field",
-    "tensile_strength",
-    "softening",
-    "length_scale",
-    "convention",
-    "residual_stiffness",
-    "part",
-    "thickness",
-    "differences",
-];
-
 /// The model, of which some keys are `needed`: what the variants of the benchmark differ in.
 pub(super) fn model(item: &Item<'_>, needed: &[&str]) -> Option<Model> {
-    let fields = item.fields(&MODEL)?;
-    let asked = |key: &str| needed.contains(&key) || fields.get(key).is_some();
-    let planes = [("strain", Plane::Strain), ("stress", Plane::Stress), ("unknown", Plane::Unknown)];
-    let plane = fields.need("plane", "plane = \"strain\", \"stress\" or \"unknown\"", |item| item.choice(&planes));
-    let unknown = |item: &Item<'_>| item.node.as_str() == Some("unknown");
-    let traction = asked("traction").then(|| {
-        fields.need("traction", "traction = \"1 MPa\", or \"unknown\"", |item| {
-            if unknown(item) { Some(None) } else { item.positive(Dimension::STRESS).map(Some) }
+    item.table(|fields| {
+        let planes = [("strain", Plane::Strain), ("stress", Plane::Stress), ("unknown", Plane::Unknown)];
+        let plane = fields.need("plane", "plane = \"strain\", \"stress\" or \"unknown\"", |item| item.choice(&planes));
+        let need = |key: &str, like: &str| {
+            if needed.contains(&key) && fields.get(key).is_none() {
+                item.missing::<()>(key, like);
+            }
+        };
+        need("traction", "traction = \"1 MPa\", or \"unknown\"");
+        let traction = fields.maybe("traction", |item| match item.node.as_str() {
+            Some("unknown") => None,
+            _ => item.positive(Dimension::STRESS),
+        });
+        let cracks = [
+            ("seeded", Crack::Seeded),
+            ("phase-field", Crack::PhaseField),
+            ("slit", Crack::Slit),
+            ("unknown", Crack::Unknown),
+        ];
+        need("crack", "crack = \"seeded\", \"phase-field\", \"slit\" or \"unknown\"");
+        let crack = fields.or("crack", Crack::Slit, |item| item.choice(&cracks));
+        let splits =
+            ["spectral", "none", "volumetric-deviatoric", "star-convex", "rankine", "other", "unknown"].map(|w| (w, w));
+        need("split", "split = \"spectral\"");
+        let split = fields.or("split", "spectral", |item| item.choice(&splits)).into();
+        let models = ["AT2", "AT1", "PF-CZM", "none", "other", "unknown"].map(|w| (w, w));
+        need("phase_field", "phase_field = \"AT1\", \"AT2\", …");
+        let phase_field = fields.or("phase_field", "AT2", |item| item.choice(&models));
+        let of_cohesive = ["tensile_strength", "softening"].map(|key| fields.get(key).map(|given| (key, given)));
+        if let Some((key, given)) = of_cohesive.into_iter().flatten().next().filter(|_| phase_field != "PF-CZM") {
+            given.fail::<()>(format!("{key} belongs to PF-CZM"), "remove it, or give phase_field = \"PF-CZM\"");
+        }
+        let laws = ["linear", "exponential", "cornelissen", "other"].map(|w| (w, w));
+        let convention = fields.or("convention", 1.0, |item| item.choice(&[("l0", 1.0), ("l", 0.5)]));
+        let length = fields.maybe("length_scale", |item| item.positive(Dimension::LENGTH));
+        Some(Model {
+            traction,
+            crack,
+            split,
+            phase_field: phase_field.into(),
+            tensile_strength: fields.maybe("tensile_strength", |item| item.positive(Dimension::STRESS)),
+            softening: fields.maybe("softening", |item| item.choice(&laws)).map(String::from),
+            length_scale: length.map(|length| length * convention),
+            residual_stiffness: fields.or("residual_stiffness", 0.0, |item| item.quantity(Dimension::NONE)),
+            half: fields.or("part", false, |item| item.choice(&[("whole", false), ("half", true)])),
+            thickness: fields.maybe("thickness", |item| item.positive(Dimension::LENGTH)),
+            differences: fields.or("differences", Vec::new(), |item| item.each(Item::words)),
+            plane: plane?,
         })
-    });
-    let cracks = [
-        ("seeded", Crack::Seeded),
-        ("phase-field", Crack::PhaseField),
-        ("slit", Crack::Slit),
-        ("unknown", Crack::Unknown),
-    ];
-    let crack = asked("crack").then(|| {
-        fields
-            .need("crack", "crack = \"seeded\", \"phase-field\", \"slit\" or \"unknown\"", |item| item.choice(&cracks))
-    });
-    let splits =
-        ["spectral", "none", "volumetric-deviatoric", "star-convex", "rankine", "other", "unknown"].map(|w| (w, w));
-    let split = asked("split").then(|| fields.need("split", "split = \"spectral\"", |item| item.choice(&splits)));
-    let models = ["AT2", "AT1", "PF-CZM", "none", "other", "unknown"].map(|w| (w, w));
-    let phase_field = asked("phase_field")
-        .then(|| fields.need("phase_field", "phase_field = \"AT1\", \"AT2\", …", |item| item.choice(&models)));
-    if phase_field != Some(Some("PF-CZM"))
-        && let Some((key, given)) = ["tensile_strength", "softening"].iter().find_map(|k| Some((k, fields.get(k)?)))
-    {
-        return given.fail(format!("{key} belongs to PF-CZM"), "remove it, or give phase_field = \"PF-CZM\"");
-    }
-    let strength = fields.maybe("tensile_strength", |item| item.positive(Dimension::STRESS));
-    let laws = ["linear", "exponential", "cornelissen", "other"].map(|w| (w, w));
-    let softening = fields.maybe("softening", |item| item.choice(&laws));
-    let length = fields.maybe("length_scale", |item| item.positive(Dimension::LENGTH));
-    let convention = fields.or("convention", 1.0, |item| item.choice(&[("l0", 1.0), ("l", 0.5)]));
-    let k = fields.or("residual_stiffness", 0.0, |item| item.quantity(Dimension::NONE));
-    let half = fields.or("part", false, |item| item.choice(&[("whole", false), ("half", true)]));
-    let thickness = fields.maybe("thickness", |item| item.positive(Dimension::LENGTH));
-    let differences = fields.or("differences", Vec::new(), |item| item.each(Item::words));
-    let convention = convention?;
-    Some(Model {
-        plane: plane?,
-        traction: traction.unwrap_or(Some(None))?,
-        crack: crack.unwrap_or(Some(Crack::Slit))?,
-        split: split.unwrap_or(Some("spectral"))?.into(),
-        phase_field: phase_field.unwrap_or(Some("AT2"))?.into(),
-        tensile_strength: strength?,
-        softening: softening?.map(String::from),
-        length_scale: length?.map(|l| l * convention),
-        residual_stiffness: k?,
-        half: half?,
-        thickness: thickness?,
-        differences: differences?,
     })
 }

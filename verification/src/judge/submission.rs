@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::mapping::{Mapping, curves};
 use super::model::{Model, model};
+use super::numbers::Asked;
 use crate::output::foreign;
 use crate::reference::SUBMISSION;
 use crate::scene::diagnostic::Sources;
@@ -161,11 +162,11 @@ fn read(root: &Item<'_>, document: &Document) -> Option<Submission> {
         _ => &[],
     };
     let model = match needed {
-        [] => fields.get("model").map_or(Some(Model::default()), |item| model(&item, needed)),
+        [] => Some(fields.or("model", Model::default(), |item| model(item, needed))),
         _ => fields.need("model", &format!("[model] with plane, {}", needed.join(", ")), |item| model(item, needed)),
     };
-    let rest = fields.get("discretisation").map_or(Some(Default::default()), |item| discretisation(&item));
-    let cost = fields.get("cost").map_or(Some(Cost::default()), |item| cost(&item));
+    let (method, spacing, discretisation) = fields.or("discretisation", Default::default(), discretisation);
+    let cost = fields.or("cost", Cost::default(), cost);
     let asked = benchmark.unwrap_or_default();
     let uncertainty = fields.get("uncertainty");
     let (mut stated_curves, mut stated_values) = (Some([None; 6]), Some(Vec::new()));
@@ -179,13 +180,11 @@ fn read(root: &Item<'_>, document: &Document) -> Option<Submission> {
             stated_values = item.fail(message, "remove [uncertainty]");
         }
     }
-    let files = fields.get("files").map_or(Some((None, "#".into())), |item| files(&item));
+    let (separator, comment) = fields.or("files", (None, "#".into()), files);
     let thickness = model.as_ref().and_then(|m| m.thickness);
-    let curves = fields.get("curves").map_or(Some(Default::default()), |item| curves(&item, thickness));
-    let values = fields
-        .get("values")
-        .map_or(Some(Vec::new()), |item| values(&item, asked, |item, dimension| item.quantity(dimension)));
-    let ((method, spacing, discretisation), (separator, comment), (time, curves)) = (rest?, files?, curves?);
+    let (time, curves) = fields.or("curves", Default::default(), |item| curves(item, thickness));
+    let values =
+        fields.or("values", Vec::new(), |item| values(item, asked, |item, dimension| item.quantity(dimension)));
     Some(Submission {
         benchmark: benchmark?.to_string(),
         code: code?,
@@ -193,78 +192,74 @@ fn read(root: &Item<'_>, document: &Document) -> Option<Submission> {
         method,
         spacing,
         discretisation,
-        cost: cost?,
+        cost,
         stated: stated_curves?,
         separator,
         comment,
         time,
         curves,
-        values: values?,
+        values,
         stated_values: stated_values?,
         document: document.clone(),
     })
 }
 
 fn code(item: &Item<'_>) -> Option<Code> {
-    let fields = item.fields(&["name", "version", "commit", "url", "run_by", "notes"])?;
-    let name = fields.need("name", "name = \"my-code\"", Item::words);
-    let [version, commit, url, run_by] =
-        ["version", "commit", "url", "run_by"].map(|key| fields.maybe(key, Item::words));
-    let notes = fields.or("notes", Vec::new(), |item| item.each(Item::words));
-    Some(Code { name: name?, version: version?, commit: commit?, url: url?, run_by: run_by?, notes: notes? })
+    item.table(|fields| {
+        let name = fields.need("name", "name = \"my-code\"", Item::words);
+        let [version, commit, url, run_by] =
+            ["version", "commit", "url", "run_by"].map(|key| fields.maybe(key, Item::words));
+        let notes = fields.or("notes", Vec::new(), |item| item.each(Item::words));
+        Some(Code { name: name?, version, commit, url, run_by, notes })
+    })
 }
 
 type Discretisation = (Option<String>, Option<f64>, Vec<(String, String)>);
 
 fn discretisation(item: &Item<'_>) -> Option<Discretisation> {
-    let fields = item.fields(&["method", "spacing", "degree", "unknowns", "steps", "time_step"])?;
-    let method = fields.maybe("method", Item::words);
-    let spacing = fields.maybe("spacing", |item| item.positive(Dimension::LENGTH));
-    let count = |key: &str| fields.maybe(key, |item| item.whole(1, usize::MAX >> 1));
-    let [degree, unknowns, steps] = ["degree", "unknowns", "steps"].map(count);
-    let step = fields.maybe("time_step", |item| item.positive(Dimension::TIME));
-    let mut rest = Vec::new();
-    for (key, value) in [("degree", degree?), ("unknowns", unknowns?), ("steps", steps?)] {
-        rest.extend(value.map(|v| (key.to_string(), v.to_string())));
-    }
-    rest.extend(step?.map(|s| ("time step".to_string(), format!("{s:e} s"))));
-    Some((method?, spacing?, rest))
+    item.table(|fields| {
+        let count = |key: &str| {
+            let number = fields.maybe(key, |item| item.whole(1, usize::MAX >> 1))?;
+            Some((key.to_string(), number.to_string()))
+        };
+        let mut rest: Vec<(String, String)> = ["degree", "unknowns", "steps"].into_iter().filter_map(count).collect();
+        let step = fields.maybe("time_step", |item| item.positive(Dimension::TIME));
+        rest.extend(step.map(|step| ("time step".to_string(), format!("{step:e} s"))));
+        let method = fields.maybe("method", Item::words);
+        Some((method, fields.maybe("spacing", |item| item.positive(Dimension::LENGTH)), rest))
+    })
 }
 
 fn cost(item: &Item<'_>) -> Option<Cost> {
-    let fields = item.fields(&["cpu", "wall", "cores", "processor", "memory_mb", "kernel_ns"])?;
-    let time = |key: &str| fields.maybe(key, |item| item.positive(Dimension::TIME));
-    let number = |key: &str| fields.maybe(key, |item| item.positive(Dimension::NONE));
-    let (cpu, wall) = (time("cpu"), time("wall"));
-    let cores = fields.maybe("cores", |item| item.whole(1, 100_000_000));
-    let processor = fields.maybe("processor", Item::words);
-    let (memory, kernel) = (number("memory_mb"), number("kernel_ns"));
-    Some(Cost {
-        cpu_s: cpu?,
-        wall_s: wall?,
-        cores: cores?,
-        processor: processor?,
-        memory_mb: memory?,
-        kernel_ns: kernel?,
+    item.table(|fields| {
+        let time = |key: &str| fields.maybe(key, |item| item.positive(Dimension::TIME));
+        let number = |key: &str| fields.maybe(key, |item| item.positive(Dimension::NONE));
+        Some(Cost {
+            cpu_s: time("cpu"),
+            wall_s: time("wall"),
+            cores: fields.maybe("cores", |item| item.whole(1, 100_000_000)),
+            processor: fields.maybe("processor", Item::words),
+            memory_mb: number("memory_mb"),
+            kernel_ns: number("kernel_ns"),
+        })
     })
 }
 
 fn stated(item: &Item<'_>) -> Option<[Option<f64>; 6]> {
-    let fields = item.fields(&["kinetic", "elastic", "work", "fracture", "tip"])?;
-    let [kinetic, elastic, work, fracture] =
-        ["kinetic", "elastic", "work", "fracture"].map(|key| fields.maybe(key, |item| item.positive(Dimension::NONE)));
-    let tip = fields.maybe("tip", |item| item.positive(Dimension::LENGTH));
-    let tip = tip?;
-    Some([kinetic?, elastic?, work?, fracture?, tip, tip])
+    item.table(|fields| {
+        let part = |key: &str| fields.maybe(key, |item| item.positive(Dimension::NONE));
+        let tip = fields.maybe("tip", |item| item.positive(Dimension::LENGTH));
+        Some([part("kinetic"), part("elastic"), part("work"), part("fracture"), tip, tip])
+    })
 }
 
 fn files(item: &Item<'_>) -> Option<(Option<char>, String)> {
-    let fields = item.fields(&["separator", "comment"])?;
     let separators =
         [("auto", None), ("comma", Some(',')), ("semicolon", Some(';')), ("tab", Some('\t')), ("space", Some(' '))];
-    let separator = fields.or("separator", None, |item| item.choice(&separators));
-    let comment = fields.or("comment", "#".to_string(), Item::words);
-    Some((separator?, comment?))
+    item.table(|fields| {
+        let separator = fields.or("separator", None, |item| item.choice(&separators));
+        Some((separator, fields.or("comment", "#".to_string(), Item::words)))
+    })
 }
 
 /// Numbers that the benchmark asks for, each read by `read`.
@@ -274,9 +269,8 @@ fn values(
     read: impl Fn(&Item<'_>, Dimension) -> Option<f64>,
 ) -> Option<Vec<(String, f64)>> {
     let asked = super::numbers::values(benchmark);
-    let names: Vec<&str> = asked.iter().map(|a| a.name.as_str()).collect();
-    let fields = item.fields(&names)?;
-    let found = asked.iter().map(|a| Some((a.name.clone(), fields.maybe(&a.name, |item| read(item, a.dimension))?)));
-    let found: Vec<(String, Option<f64>)> = found.collect::<Option<_>>()?;
-    Some(found.into_iter().filter_map(|(name, value)| Some((name, value?))).collect())
+    item.table(|fields| {
+        let given = |a: &Asked| Some((a.name.clone(), fields.maybe(&a.name, |item| read(item, a.dimension))?));
+        Some(asked.iter().filter_map(given).collect())
+    })
 }

@@ -119,13 +119,13 @@ fn value(value: f64) -> Answer {
     some(Some(value))
 }
 
-/// The measure of that name.
+/// The measure of that name, or the last value of the run.
 ///
 /// # Errors
-/// If none is named, or there is none of that name.
+/// If there is none of that name.
 pub fn find(name: Option<&str>) -> Result<&'static Measure, String> {
+    let name = name.unwrap_or("final");
     let known = || MEASURES.iter().map(|measure| measure.name).collect::<Vec<_>>().join(", ");
-    let name = name.ok_or_else(|| format!("name a measure: {}", known()))?;
     let found = MEASURES.iter().find(|measure| measure.name == name);
     found.ok_or_else(|| format!("unknown measure {name:?}; known: {}", known()))
 }

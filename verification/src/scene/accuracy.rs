@@ -27,7 +27,7 @@ const TOLERANCE: f64 = 0.1;
 const LOOSEST: f64 = 1e-3;
 
 /// The accuracy in the `[solver]` table.
-pub(super) fn accuracy(fields: &Fields<'_>) -> Option<Option<f64>> {
+pub(super) fn accuracy(fields: &Fields<'_>) -> Option<f64> {
     fields.maybe("accuracy", |item: &Item<'_>| {
         let value = number(item)?;
         let message = || format!("nothing can be chosen for an accuracy of {value}");

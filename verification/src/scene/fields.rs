@@ -222,21 +222,34 @@ impl<'a> Item<'a> {
 
     /// A table with no other keys than `known`; unknown ones are noted, and the rest can still be read.
     pub fn fields(&self, known: &[&str]) -> Option<Fields<'a>> {
+        self.table(|fields| {
+            fields.asked.borrow_mut().extend(known.iter().map(ToString::to_string));
+            Some(fields.clone())
+        })
+    }
+
+    /// A table read by `read`, which asks for every key that it knows, whatever is wrong with others: keys
+    /// that it does not ask for are noted as unknown.
+    pub fn table<T>(&self, read: impl FnOnce(&Fields<'a>) -> Option<T>) -> Option<T> {
         let Some(table) = self.node.as_table() else { return self.wrong_kind("a table") };
-        for (key, node) in table.iter().filter(|(key, _)| !known.contains(&key.as_str())) {
+        let fields = Fields { item: self.clone(), asked: RefCell::default() };
+        let value = read(&fields);
+        let asked = fields.asked.into_inner();
+        let known: Vec<&str> = asked.iter().map(String::as_str).collect();
+        for (key, node) in table.iter().filter(|(key, _)| !asked.contains(key)) {
             let location = node.key_location.clone().or_else(|| node.location.clone());
-            let (path, remedy) =
-                (join(&self.path, key), format!("{}known keys: {}", hint(key, known), known.join(", ")));
-            self.fail_at::<()>(location, &path, format!("unknown key {key:?}"), remedy);
+            let remedy = format!("{}known keys: {}", hint(key, &known), known.join(", "));
+            self.fail_at::<()>(location, &join(&self.path, key), format!("unknown key {key:?}"), remedy);
         }
-        Some(Fields { item: self.clone() })
+        value
     }
 }
 
-/// A table whose keys are known.
+/// A table of which keys are asked for.
 #[derive(Debug, Clone)]
 pub struct Fields<'a> {
     item: Item<'a>,
+    asked: RefCell<Vec<String>>,
 }
 
 impl<'a> Fields<'a> {
@@ -247,6 +260,10 @@ impl<'a> Fields<'a> {
 
     /// The value of a key, if it is there.
     pub fn get(&self, key: &str) -> Option<Item<'a>> {
+        let mut asked = self.asked.borrow_mut();
+        if !asked.iter().any(|known| known == key) {
+            asked.push(key.to_string());
+        }
         let node = self.item.node.as_table()?.get(key)?;
         Some(Item { node, path: join(&self.item.path, key), problems: self.item.problems })
     }
@@ -256,19 +273,20 @@ impl<'a> Fields<'a> {
         self.get(key).map_or_else(|| self.item.missing(key, like), |item| read(&item))
     }
 
-    /// A key with a default.
-    pub fn or<T>(&self, key: &str, default: T, read: impl FnOnce(&Item<'a>) -> Option<T>) -> Option<T> {
-        self.get(key).map_or(Some(default), |item| read(&item))
+    /// A key with a default, which stands in for what is wrong as well.
+    pub fn or<T>(&self, key: &str, default: T, read: impl FnOnce(&Item<'a>) -> Option<T>) -> T {
+        self.maybe(key, read).unwrap_or(default)
     }
 
-    /// A key that may be absent; the outer `None` means a problem.
-    pub fn maybe<T>(&self, key: &str, read: impl FnOnce(&Item<'a>) -> Option<T>) -> Option<Option<T>> {
-        self.get(key).map_or(Some(None), |item| read(&item).map(Some))
+    /// A key that may be absent; none if it is wrong, too.
+    pub fn maybe<T>(&self, key: &str, read: impl FnOnce(&Item<'a>) -> Option<T>) -> Option<T> {
+        self.get(key).and_then(|item| read(&item))
     }
 
     /// Which one of several keys is there, and its value; two of them are a problem.
     pub fn one_of<'k>(&self, keys: &[&'k str]) -> Option<Option<(&'k str, Item<'a>)>> {
-        let mut given = keys.iter().filter_map(|key| self.get(key).map(|item| (*key, item)));
+        let given: Vec<_> = keys.iter().filter_map(|key| self.get(key).map(|item| (*key, item))).collect();
+        let mut given = given.into_iter();
         match (given.next(), given.next()) {
             (Some((first, _)), Some((second, item))) => {
                 item.fail(format!("both {first} and {second} are given"), "remove one of the two")

@@ -11,24 +11,25 @@ use crate::arithmetic::Arithmetic;
 
 /// A factor over time: `{ ramp = "1 us", until = "5 us" }`.
 pub(super) fn factor(item: &Item<'_>) -> Option<TimeFactor> {
-    let fields = item.fields(&["ramp", "smooth", "table", "file", "formula", "until"])?;
-    let until = fields.maybe("until", time);
-    let course = match fields.one_of(&["ramp", "smooth", "table", "file", "formula"])? {
-        None => Some(Course::Constant),
-        Some(("ramp", rise)) => time(&rise).map(Course::Ramp),
-        Some(("smooth", rise)) => time(&rise).map(Course::Smooth),
-        Some(("table", rows)) => rows.each(row).map(Course::Table),
-        Some(("file", name)) => {
-            let remedy = "give a CSV file beside the scene with rows of time (s) and factor";
-            rows_of_file(&name, remedy).map(Course::Table)
-        }
-        Some((_, text)) => {
-            let remedy = "give a formula of t (s), such as \"exp(-t / 100 us)\"";
-            let (text, value) = function(&text, ["t"], true, remedy)?;
-            Some(Course::Formula(TimeFormula::new(text, move |t| value([t]))))
-        }
-    };
-    Some(TimeFactor { course: course?, until: until? })
+    item.table(|fields| {
+        let until = fields.maybe("until", time);
+        let course = match fields.one_of(&["ramp", "smooth", "table", "file", "formula"])? {
+            None => Some(Course::Constant),
+            Some(("ramp", rise)) => time(&rise).map(Course::Ramp),
+            Some(("smooth", rise)) => time(&rise).map(Course::Smooth),
+            Some(("table", rows)) => rows.each(row).map(Course::Table),
+            Some(("file", name)) => {
+                let remedy = "give a CSV file beside the scene with rows of time (s) and factor";
+                rows_of_file(&name, remedy).map(Course::Table)
+            }
+            Some((_, text)) => {
+                let remedy = "give a formula of t (s), such as \"exp(-t / 100 us)\"";
+                let (text, value) = function(&text, ["t"], true, remedy)?;
+                Some(Course::Formula(TimeFormula::new(text, move |t| value([t]))))
+            }
+        };
+        Some(TimeFactor { course: course?, until })
+    })
 }
 
 /// A row of a table: a time and a factor.
@@ -74,11 +75,12 @@ pub(super) fn stress_field(item: &Item<'_>) -> Option<StressField> {
         return item.fail(message, "give xx, yy or xy, or kirsch = { stress = \"1 MPa\", radius = \"10 mm\" }");
     }
     if let Some(scales) = fields.get("kirsch") {
-        let scales = scales.fields(&["stress", "radius", "center"])?;
-        let stress = scales.need("stress", "stress = \"1 MPa\"", |item| item.quantity(Dimension::STRESS));
-        let radius = scales.need("radius", "radius = \"10 mm\"", |item| item.positive(Dimension::LENGTH));
-        let center = scales.or("center", [0.0; 2], point);
-        return Some(kirsch(stress?, radius?, center?));
+        return scales.table(|fields| {
+            let stress = fields.need("stress", "stress = \"1 MPa\"", |item| item.quantity(Dimension::STRESS));
+            let radius = fields.need("radius", "radius = \"10 mm\"", |item| item.positive(Dimension::LENGTH));
+            let center = fields.or("center", [0.0; 2], point);
+            Some(kirsch(stress?, radius?, center))
+        });
     }
     let remedy = "give a formula of x and y (m) for the stress in Pa, such as \"1e6 * (1 - y / 0.02)\"";
     let [xx, yy, xy] = ["xx", "yy", "xy"].map(|component| match fields.get(component) {

@@ -51,11 +51,11 @@ pub(super) fn mesh(item: &Item<'_>, longest: Option<f64>) -> Option<Mesh> {
             complete = extra.fail::<()>(format!("{key} cannot be used with {what}"), remedy).is_some();
         }
     }
-    let degree = fields.need("degree", "degree = 2", of_degree);
+    let degree = fields.or("degree", [2; 2], of_degree);
     match (form, complete) {
         (_, false) => None,
-        (Some("control_points"), _) => general(&fields, degree?),
-        (Some(_), _) => fields.get("annulus").and_then(|item| annulus(&item, &fields, degree?)),
+        (Some("control_points"), _) => general(&fields, degree),
+        (Some(_), _) => fields.get("annulus").and_then(|item| annulus(&item, &fields, degree)),
         (None, _) => rectangle(&fields, degree, longest),
     }
 }
@@ -69,35 +69,36 @@ fn of_degree(item: &Item<'_>) -> Option<[usize; 2]> {
     item.whole_per_direction(1, 4)
 }
 
-fn rectangle(fields: &Fields<'_>, degree: Option<[usize; 2]>, longest: Option<f64>) -> Option<Mesh> {
-    let origin = fields.need("origin", "origin = [0.0, 0.0] (m), the lower left corner", point);
+fn rectangle(fields: &Fields<'_>, degree: [usize; 2], longest: Option<f64>) -> Option<Mesh> {
+    let origin = fields.or("origin", [0.0; 2], point);
     let size = fields.need("size", "size = [0.1, 0.04] (m), width and height", size);
     let knots = fields.maybe("knots", |item| item.pair(|direction| direction.each(length)));
-    let halvings = fields.maybe("refine", |item| {
-        item.fields(&["levels"])?
-            .need("levels", "levels = 1, how often spans near a crack are halved", |item| item.whole(1, MOST_HALVINGS))
+    let halvings = fields.or("refine", 0, |item| {
+        let like = "levels = 1, how often spans near a crack are halved";
+        item.table(|fields| fields.need("levels", like, |item| item.whole(1, MOST_HALVINGS)))
     });
-    let coarsening = f64::from(1 << halvings.flatten().unwrap_or(0)); // of the spans away from cracks
-    let cells = match (fields.get("cells"), &knots) {
-        (Some(cells), Some(Some(_))) => cells.fail("both cells and knots are given", "remove one of the two"),
-        (None, Some(None)) => match (longest.map(|longest| longest * coarsening), size) {
+    let coarsening = f64::from(1 << halvings); // of the spans away from cracks
+    let by_knots = fields.get("knots").is_some();
+    let cells = match (fields.get("cells"), by_knots) {
+        (Some(cells), true) => cells.fail("both cells and knots are given", "remove one of the two"),
+        (None, false) => match (longest.map(|longest| longest * coarsening), size) {
             (Some(longest), Some(size)) => cells_of(fields, size, longest),
             _ => fields.need("cells", "cells = [100, 40], the spans per direction", |_| None),
         },
         (Some(cells), _) => cells.whole_per_direction(1, MOST_CELLS),
         (None, _) => Some([1, 1]),
     };
-    let parts = match (fields.get("subdivide"), &knots) {
-        (Some(item), Some(None)) => item.fail("subdivide without knots", "give more cells, or the knots to subdivide"),
-        _ => fields.or("subdivide", 1, |item| item.whole(1, MOST_CELLS)),
+    let parts = match fields.get("subdivide").filter(|_| !by_knots) {
+        Some(item) => item.fail("subdivide without knots", "give more cells, or the knots to subdivide"),
+        None => Some(fields.or("subdivide", 1, |item| item.whole(1, MOST_CELLS))),
     };
     let ends = long_ends(fields);
-    let (degree, origin, size, knots, cells, parts) = (degree?, origin?, size?, knots?, cells?, parts?);
+    let (size, cells, parts) = (size?, cells?, parts?);
     let mut mesh = match knots {
         None => Mesh::uniform(degree, origin, size, cells),
         Some(knots) => graded(fields, degree, origin, size, knots, parts)?,
     };
-    mesh.halvings = halvings?.unwrap_or(0);
+    mesh.halvings = halvings;
     if ends?.into_iter().all(|side| mesh.lengthen_end(side)) { Some(mesh) } else { too_short(fields) }
 }
 
@@ -115,7 +116,7 @@ fn cells_of(fields: &Fields<'_>, size: [f64; 2], longest: f64) -> Option<[usize;
 
 /// Sides at which the last two spans are one.
 fn long_ends(fields: &Fields<'_>) -> Option<Vec<Side>> {
-    let ends = fields.or("long_ends", Vec::new(), |item| item.each(Item::word::<Side>))?;
+    let ends = fields.or("long_ends", Vec::new(), |item| item.each(Item::word::<Side>));
     if (1..ends.len()).any(|number| ends[..number].contains(&ends[number])) {
         return fields.get("long_ends")?.fail("a side is named twice", "name each side once");
     }
@@ -180,7 +181,7 @@ fn general(fields: &Fields<'_>, degree: [usize; 2]) -> Option<Mesh> {
     let control_points: Option<Vec<[f64; 2]>> = fields.need("control_points", like, |item| item.each(point));
     let weights = fields.maybe("weights", |item| item.each(number));
     let parts = fields.or("subdivide", 1, |item| item.whole(1, MOST_CELLS));
-    let (knots, control_points, weights, parts) = (knots?, control_points?, weights?, parts?);
+    let (knots, control_points) = (knots?, control_points?);
     let weights = weights.unwrap_or_else(|| vec![1.0; control_points.len()]);
     let mesh = Mesh { degree, knots, geometry: Some(Geometry { control_points, weights }), halvings: 0 };
     match mesh.nurbs()? {
@@ -208,7 +209,7 @@ fn annulus(item: &Item<'_>, fields: &Fields<'_>, degree: [usize; 2]) -> Option<M
         return fields.get("degree")?.fail("an arc is a rational curve of degree 2", remedy);
     }
     let ends = long_ends(fields);
-    let (center, inner, outer, angles, cells, ends) = (center?, inner?, outer?, angles?, cells?, ends?);
+    let (inner, outer, cells, ends) = (inner?, outer?, cells?, ends?);
     few_enough(fields, "cells", cells, degree)?;
     if angles[1] - angles[0] >= std::f64::consts::TAU - LEAST_OPENING {
         let message = "a full turn would leave a slit: the ends of the patch touch and are not joined";

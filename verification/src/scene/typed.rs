@@ -49,10 +49,14 @@ pub fn through<'de, D: Deserializer<'de>, T>(
 ) -> Result<T, D::Error> {
     let node = located_nowhere(toml::Value::deserialize(deserializer)?);
     let problems = Problems::default();
-    read(&Item::new(&node, "", &problems)).ok_or_else(|| {
-        let Problem { key, message, remedy, .. } = problems.into_inner().swap_remove(0);
-        D::Error::custom(format!("{message}{BREAK}{remedy}{BREAK}{key}"))
-    })
+    let found = read(&Item::new(&node, "", &problems));
+    match (problems.into_inner().into_iter().next(), found) {
+        (None, Some(found)) => Ok(found),
+        (problem, _) => {
+            let Problem { key, message, remedy, .. } = problem.expect("what was not read is wrong");
+            Err(D::Error::custom(format!("{message}{BREAK}{remedy}{BREAK}{key}")))
+        }
+    }
 }
 
 /// A value without its place.

@@ -18,27 +18,10 @@ use crate::scene::{Problem, SceneFileError};
 use crate::study::scene::concerned;
 use crate::study::{INPUTS, Measurement, STUDIES, Study, find};
 
-/// Keys of a check that every study reads.
-const EVERYWHERE: [&str; 18] = [
-    "id",
-    "formerly",
-    "quantity",
-    "unit",
-    "variant",
-    "expect",
-    "expect_kind",
-    "expect_source",
-    "expect_side",
-    "uncertainty",
-    "min",
-    "max",
-    "below",
-    "above",
-    "bounds",
-    "why",
-    "limit",
-    "shown",
-];
+/// Keys of a check that every measure reads, and no study that measures itself.
+const MEASURED: [&str; 7] = ["measure", "scale", "band", "reference", "meshes", "order", "discretisation"];
+/// Those that only some measures read.
+const BY_SOME: [&str; 5] = ["column", "from", "to", "at", "against"];
 
 /// A case that can run.
 #[derive(Debug, Clone)]
@@ -173,23 +156,19 @@ impl Wrong<'_> {
         }
     }
 
-    /// Notes every key of a check that is not among those that are read.
-    fn look_at_keys(&mut self, index: usize, what: &str, reads: &[&[&str]]) {
-        let table = self.case.document.root.at(&format!("check.{index}"));
-        let keys = table.and_then(|node| node.as_table()).into_iter().flat_map(|table| table.keys());
-        for key in keys.filter(|key| !reads.iter().any(|read| read.contains(&key.as_str()))) {
-            let known = reads.concat().join(", ");
-            self.note(
-                format!("check.{index}.{key}"),
-                format!("{what} does not read {key:?}"),
-                format!("remove it; known keys: {known}"),
-            );
+    /// Notes every key of measures that a check has and that is not among those that are read.
+    fn look_at_keys(&mut self, index: usize, what: &str, reads: &[&str]) {
+        let path = |key: &str| format!("check.{index}.{key}");
+        for key in MEASURED.iter().chain(&BY_SOME).filter(|key| !reads.contains(key)) {
+            if self.case.document.root.at(&path(key)).is_some() {
+                self.note(path(key), format!("{what} does not read {key:?}"), "remove it");
+            }
         }
     }
 
     /// A check of a study that says itself what it measures.
     fn look_at_plan(&mut self, index: usize, check: &Check, plan: &[Measurement]) -> Vec<Planned> {
-        self.look_at_keys(index, &format!("the study {:?}", self.case.study), &[&EVERYWHERE]);
+        self.look_at_keys(index, &format!("the study {:?}", self.case.study), &[]);
         let key = |name: &str| format!("check.{index}.{name}");
         let found: Vec<&Measurement> = plan.iter().filter(|planned| planned.quantity == check.quantity).collect();
         if found.is_empty() {

@@ -78,7 +78,7 @@ fn refused_by(study: &str, rest: &str, parts: &[&str]) {
 fn bounds_that_no_value_can_meet_or_that_count_from_nothing_are_refused() {
     let with = |more: &str| check("unity", &format!("{more}\nwhy = \"a reason\""));
     refused(&with("min = 2\nmax = 1"), &["min 2 is above max 1"]);
-    refused(&with("below = -1\nabove = 2"), &["below or above is negative"]);
+    refused(&with("below = -1\nabove = 2"), &["a distance from the reference is negative"]);
     refused(&with("max = 1\nbelow = 1\nabove = 2"), &["bounds of two kinds"]);
     refused(&with("from = 2\nto = 1"), &["to is before from"]);
     refused(&with("expect_source = \"a table\""), &["expect_source without expect"]);
@@ -119,7 +119,7 @@ fn what_a_study_does_not_read_or_measure_is_refused_before_it_runs() {
 fn what_no_run_of_a_scene_has_is_refused_before_it_runs() {
     let of = |lines: &str| format!("{}\n{}", SCENE, quantity("q", lines));
     for (lines, parts) in [
-        ("", &["check.0.measure", "name a measure"][..]),
+        ("", &["the measure \"final\" needs column", "add column"][..]),
         ("measure = \"closuer\"", &["unknown measure"]),
         ("measure = \"closure\"\nvariant = \"none\"", &["no run of this case"]),
         ("measure = \"closure\"\nmax = 1.0", &["bounds without a reason"]),
@@ -197,7 +197,9 @@ fn the_fingerprint_of_a_case_knows_the_numbers_its_scene_names() {
     let folder = tempfile::tempdir().unwrap();
     let suite = folder.path().join("energy");
     std::fs::create_dir(&suite).unwrap();
-    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/cases/energy/driven-bar.toml")).unwrap();
+    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
+    std::fs::copy(cases.join("bases.toml"), folder.path().join("bases.toml")).unwrap();
+    let text = std::fs::read_to_string(cases.join("energy/driven-bar.toml")).unwrap();
     let formula = "formula = \"0.5 - 0.5*cos(2*PI*t / 1 s)\"";
     assert!(text.contains(formula));
     let file = suite.join("driven-bar.toml");

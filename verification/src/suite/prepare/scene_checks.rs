@@ -6,7 +6,7 @@ use fisura::dynamics::total_frame::domain::column;
 use fisura::material::degradation::FractureModel;
 use fisura::scene::{Frame, PhaseFieldInterval, Scene};
 
-use super::{EVERYWHERE, Wrong, distinct, find_band, grid_convergence};
+use super::{MEASURED, Wrong, distinct, find_band, grid_convergence};
 use crate::case::Check;
 use crate::case::expand::CaseScene;
 use crate::measure::{LooksAt, Measure, Run, find};
@@ -15,8 +15,6 @@ use crate::reference::{Library, relative_uncertainty};
 use crate::scene::suggest::hint;
 use crate::study::scene::concerned;
 
-/// Keys that every measure reads, beside those of every study.
-const MEASURED: [&str; 7] = ["measure", "scale", "band", "reference", "meshes", "order", "discretisation"];
 /// Times that differ by less than this part are the same.
 const SLACK: f64 = 1e-9;
 
@@ -27,11 +25,8 @@ pub(super) fn look(wrong: &mut Wrong<'_>, index: usize, check: &Check, scenes: &
         Ok(measure) => measure,
         Err(message) => return wrong.note(at("measure"), message, "name one of them"),
     };
-    wrong.look_at_keys(
-        index,
-        &format!("the measure {:?}", measure.name),
-        &[&EVERYWHERE, &MEASURED, measure.needs, measure.takes],
-    );
+    let reads = [&MEASURED[..], measure.needs, measure.takes].concat();
+    wrong.look_at_keys(index, &format!("the measure {:?}", measure.name), &reads);
     let table = wrong.case.document.root.at(&format!("check.{index}"));
     for key in measure.needs.iter().filter(|key| table.is_none_or(|table| table.get(key).is_none())) {
         wrong.note(at(key), format!("the measure {:?} needs {key}", measure.name), format!("add {key} = …"));
