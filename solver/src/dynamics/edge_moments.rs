@@ -22,10 +22,12 @@ use std::collections::BTreeMap;
 
 use faer::sparse::{SparseColMat, Triplet};
 
-use crate::dynamics::surface::{SurfacePoint, edge_ends};
+use crate::dynamics::surface::{SurfacePoint, curve_of, edge_ends};
 use crate::linear_algebra::cholesky::LowerFactor;
 use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
 use crate::linear_algebra::extremes::{larger, smaller};
+use crate::scene::edges::steps_along;
+use crate::scene::shape::distance_to_segment;
 use crate::scene::{Body, EdgeCondition, Hold};
 use crate::splines::patch::Patch;
 use crate::splines::spline::SplineSpace;
@@ -42,8 +44,6 @@ const LEAST: f64 = 0.5;
 const BARE: f64 = 1e-4;
 /// Parts by which an edge may be too short for their number.
 const ROUND_OFF: f64 = 1e-9;
-/// Distance between ends of edges that counts as none, in lengths of the edge.
-const NEAR: f64 = 1e-9;
 /// Yield of a multiplier at control points that can move, of that at all of them, that counts as none.
 const YIELDS: f64 = 1e-9;
 
@@ -246,17 +246,29 @@ pub(in crate::dynamics) fn along_mesh(
     Some(EdgeMultipliers::OfMesh(direction, grid, BARE * patch.shortest_span()))
 }
 
-/// Whether no other edge of which the same component is prescribed has an end in common with this one. With
-/// all functions of the body along both, their moments would not be independent.
-pub(in crate::dynamics) fn is_alone(body: &Body, conditions: &[EdgeCondition], number: usize) -> bool {
+/// Whether no other edge of which the same component is prescribed comes within the reach of the functions
+/// of this one, but for one beside it: with all functions along both, their moments would not be independent.
+pub(in crate::dynamics) fn is_alone(patch: &Patch, body: &Body, conditions: &[EdgeCondition], number: usize) -> bool {
     let own = &conditions[number];
-    let ends = |condition: &EdgeCondition| edge_ends(body, &condition.edge);
-    let apart = |[p, q]: [[f64; 2]; 2]| (p[0] - q[0]).hypot(p[1] - q[1]);
-    let near = NEAR * apart(ends(own));
-    let others = conditions.iter().enumerate().filter(|(other, _)| *other != number).map(|(_, other)| other);
-    let same = |other: &&EdgeCondition| (0..2).any(|d| own.components()[d] && other.components()[d]);
-    let touches = |end: [f64; 2]| ends(own).iter().any(|&of_own| apart([end, of_own]) <= near);
-    !others.filter(same).flat_map(ends).any(touches)
+    let [a, b] = edge_ends(body, &own.edge);
+    let reach = |space: &SplineSpace| {
+        let longest = space.spans().iter().map(|span| span.length()).fold(0.0, larger);
+        (space.degree() + 1) as f64 * longest
+    };
+    let reach = patch.spaces.iter().map(reach).fold(0.0, larger);
+    let same = |other: &EdgeCondition| (0..2).any(|d| own.components()[d] && other.components()[d]);
+    let is_near = |other: &EdgeCondition| {
+        let places: Vec<_> =
+            steps_along(&[curve_of(body, &other.edge)], 0.5 * patch.shortest_span()).flatten().collect();
+        let beside = |d: usize| {
+            let offsets = || places.iter().map(|place| (place[d] - a[d]).abs());
+            a[d] == b[d]
+                && offsets().fold(f64::INFINITY, smaller) > STRAIGHT * patch.shortest_span()
+                && places.iter().all(|place| place[d] == places[0][d])
+        };
+        !beside(0) && !beside(1) && places.iter().any(|&place| distance_to_segment(place, a, b) < reach)
+    };
+    !conditions.iter().enumerate().any(|(at, other)| at != number && same(other) && is_near(other))
 }
 
 /// Splines along an edge for multipliers; linear on an edge that is shorter than a part.

@@ -58,7 +58,7 @@ impl EdgeConditions {
             };
             let points = parts.iter().flatten().map(of_material).collect::<Result<Vec<_>, _>>()?;
             let positions = parts.iter().flatten().map(|point| point.position);
-            let alone = is_alone(body, &conditions, number);
+            let alone = is_alone(patch, body, &conditions, number);
             let along = alone.then(|| along_mesh(patch, lattice.grid, positions)).flatten();
             by_parts.push(along.is_none());
             let space = multiplier_space(patch, &parts);

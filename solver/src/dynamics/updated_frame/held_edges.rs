@@ -46,7 +46,7 @@ pub(super) struct HeldEdges {
 #[derive(Debug, Clone)]
 struct HeldEdge {
     condition: EdgeCondition,
-    /// Whether no other has an end in common with it.
+    /// Whether no other comes near it.
     alone: bool,
     space: SplineSpace,
     points: Vec<(Follower, SurfacePoint)>,
@@ -69,7 +69,7 @@ impl HeldEdges {
             let points: Vec<_> = on_material.map(|point| (Follower::new(point.position), *point)).collect();
             let reaction = Reaction { velocity: [condition.prescribed.start()[1]; 2], ..Reaction::default() };
             (!points.is_empty()).then(|| HeldEdge {
-                alone: is_alone(body, &conditions, number),
+                alone: is_alone(patch, body, &conditions, number),
                 space: multiplier_space(patch, &parts),
                 condition: condition.clone(),
                 points,
