@@ -50,7 +50,7 @@ impl<'a> Held<'a> {
             let message = format!("this motion is prescribed on a part of this edge by {} too", other.who);
             findings.error(format!("{key}.fix"), message, "remove one of the two");
         } else if let (Some(d), true) = (self.contradicts(other), join && (self.meets(other) || other.meets(self))) {
-            let message = format!("the end of this edge moves otherwise in {} by {}", ["x", "y"][d], other.who);
+            let message = format!("{} prescribes another motion in {} where this edge ends", other.who, ["x", "y"][d]);
             let remedy = "give both the same motion, or leave a gap of a cell between them";
             findings.error(format!("{key}.fix"), message, remedy);
         }

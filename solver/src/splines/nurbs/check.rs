@@ -14,7 +14,9 @@ pub(crate) fn knots(direction: usize, degree: usize, knots: &[f64]) -> Result<()
     }
     let (count, least) = (knots.len(), 2 * (degree + 1));
     if count < least {
-        return wrong(format!("{count} knots; an open knot vector of degree {degree} has at least {least}"));
+        return wrong(format!(
+            "{count} knots are too few; an open knot vector of degree {degree} has at least {least}"
+        ));
     }
     if let Some(index) = knots.iter().position(|k| !k.is_finite()) {
         return wrong(format!("knot {index} is {}; knots are finite numbers", knots[index]));
@@ -83,7 +85,7 @@ mod tests {
         for (degree, vector, said) in [
             (5, &KNOTS[..], "direction 1: degree 5 is not from 1 to 4"),
             (0, &KNOTS, "direction 1: degree 0 is not from 1 to 4"),
-            (2, &KNOTS, "4 knots; an open knot vector of degree 2 has at least 6"),
+            (2, &KNOTS, "4 knots are too few; an open knot vector of degree 2 has at least 6"),
             (1, &[0.0, 0.0, f64::NAN, 1.0, 1.0], "knot 2 is NaN"),
             (1, &[0.0, 0.0, 0.5, 0.4, 1.0, 1.0], "knot 3 is 0.4, less than 0.5"),
             (1, &[0.0, 0.5, 1.0, 1.0], "end knot 0 stands 1 times; an open knot vector repeats it 2 times"),
