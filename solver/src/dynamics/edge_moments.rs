@@ -26,7 +26,7 @@ use crate::dynamics::surface::{SurfacePoint, curve_of, edge_ends};
 use crate::linear_algebra::cholesky::LowerFactor;
 use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
 use crate::linear_algebra::extremes::{larger, smaller};
-use crate::scene::edges::steps_along;
+use crate::scene::edges::{BESIDE, steps_along};
 use crate::scene::shape::distance_to_segment;
 use crate::scene::{Body, EdgeCondition, Hold};
 use crate::splines::patch::Patch;
@@ -115,11 +115,10 @@ impl Multipliers {
         }
     }
 
-    /// A moment of some conditions that nearly follows from the others: what is left of its own compliance
-    /// beside them, `1/(S⁻¹)_rr` of `S_rr` for `S = B M⁻¹ Bᵀ`, is less than `least`.
-    pub(in crate::dynamics) fn dependent(&self, least: f64, of: impl Fn(usize) -> bool) -> Option<&Moment> {
+    /// A moment that nearly follows from the others: what is left of its own compliance beside them,
+    /// `1/(S⁻¹)_rr` of `S_rr` for `S = B M⁻¹ Bᵀ`, is less than `least`.
+    pub(in crate::dynamics) fn dependent(&self, least: f64) -> Option<&Moment> {
         (0..self.moments.len())
-            .filter(|&row| of(self.moments[row].condition))
             .map(|row| {
                 let mut unit = vec![0.0; self.moments.len()];
                 unit[row] = 1.0;
@@ -229,45 +228,71 @@ pub(in crate::dynamics) fn moments_of(
     Ok(sums.into_values().filter(|(_, total)| total[0].hypot(total[1]) >= least).map(moment).collect())
 }
 
-/// The functions of control points on a grid along an edge through positions (m); `None` if it does not lie
-/// in a direction of the mesh, or is short.
+/// The functions of control points on a grid along an edge through points with the control points and values
+/// of the functions there; `None` if it does not lie in a direction of the mesh, is short, or if another
+/// condition fixes a component of one of them.
 pub(in crate::dynamics) fn along_mesh(
     patch: &Patch,
     grid: ControlGrid,
-    positions: impl Iterator<Item = [f64; 2]> + Clone,
+    points: &[(SurfacePoint, Vec<(usize, f64)>)],
+    is_fixed: impl Fn(usize, usize) -> bool,
 ) -> Option<EdgeMultipliers<'static>> {
+    let first = points.first()?.0.position;
     let extent = |d: usize| {
-        let along = || positions.clone().map(|position| position[d]);
-        (along().fold(f64::NEG_INFINITY, larger) - along().fold(f64::INFINITY, smaller)) / patch.shortest_span()
+        let (space, along) = (&patch.spaces[d], || points.iter().map(|(point, _)| point.position[d]));
+        let span = space.spans()[space.find_span(first[d])?].length();
+        Some((along().fold(f64::NEG_INFINITY, larger) - along().fold(f64::INFINITY, smaller), span))
     };
+    let [x, y] = [extent(0)?, extent(1)?];
     let straight = fault!("edges-along-the-mesh-buckle", STRAIGHT => -1.0);
-    let lies_along = |&d: &usize| extent(1 - d) <= straight && extent(d) >= LEAST;
-    let direction = (0..2).filter(|_| patch.geometry.is_none()).find(lies_along)?;
-    Some(EdgeMultipliers::OfMesh(direction, grid, BARE * patch.shortest_span()))
+    let lies_along =
+        |(along, span): (f64, f64), (across, other): (f64, f64)| across <= straight * other && along >= LEAST * span;
+    let direction = if lies_along(x, y) { 0 } else { 1 };
+    let fixed = || points.iter().flat_map(|(_, values)| values).any(|&(at, _)| is_fixed(at, 0) || is_fixed(at, 1));
+    let is_one = patch.geometry.is_none() && (direction == 0 || lies_along(y, x)) && !fixed();
+    is_one.then_some(EdgeMultipliers::OfMesh(direction, grid, BARE * [x, y][direction].1))
 }
 
-/// Whether no other edge of which the same component is prescribed comes within the reach of the functions
-/// of this one, but for one beside it: with all functions along both, their moments would not be independent.
-pub(in crate::dynamics) fn is_alone(patch: &Patch, body: &Body, conditions: &[EdgeCondition], number: usize) -> bool {
+/// Whether an edge is a whole side of a body along the mesh, and no other edge of which the same component is
+/// prescribed comes within the reach of its functions, but for one beside it. All functions along a part of a
+/// side would hold more of it; along two edges that meet they would not be independent.
+pub(in crate::dynamics) fn is_whole_side(
+    patch: &Patch,
+    body: &Body,
+    conditions: &[EdgeCondition],
+    number: usize,
+) -> bool {
     let own = &conditions[number];
     let [a, b] = edge_ends(body, &own.edge);
+    let Some(across) = (0..2).find(|&d| a[d] == b[d] && a[1 - d] != b[1 - d]) else { return false };
+    let goes_on = |[end, other]: [[f64; 2]; 2]| {
+        let beyond = [-BESIDE, BESIDE].map(|beside| {
+            let mut place = end;
+            place[1 - across] += BESIDE * (end[1 - across] - other[1 - across]);
+            place[across] += beside * (end[1 - across] - other[1 - across]);
+            place
+        });
+        beyond.iter().any(|place| body.shape.contains(*place))
+    };
+    if goes_on([a, b]) || goes_on([b, a]) {
+        return false;
+    }
     let reach = |space: &SplineSpace| {
         let longest = space.spans().iter().map(|span| span.length()).fold(0.0, larger);
         (space.degree() + 1) as f64 * longest
     };
     let reach = patch.spaces.iter().map(reach).fold(0.0, larger);
-    let same = |other: &EdgeCondition| (0..2).any(|d| own.components()[d] && other.components()[d]);
     let is_near = |other: &EdgeCondition| {
-        let places: Vec<_> =
-            steps_along(&[curve_of(body, &other.edge)], 0.5 * patch.shortest_span()).flatten().collect();
-        let beside = |d: usize| {
-            let offsets = || places.iter().map(|place| (place[d] - a[d]).abs());
-            a[d] == b[d]
-                && offsets().fold(f64::INFINITY, smaller) > STRAIGHT * patch.shortest_span()
-                && places.iter().all(|place| place[d] == places[0][d])
-        };
-        !beside(0) && !beside(1) && places.iter().any(|&place| distance_to_segment(place, a, b) < reach)
+        let edges = [curve_of(body, &other.edge)];
+        let places: Vec<_> = steps_along(&edges, 0.5 * patch.shortest_span()).flatten().collect();
+        let beside = places.iter().all(|place| place[across] == places[0][across]) && places[0][across] != a[across];
+        !beside && places.iter().any(|&place| distance_to_segment(place, a, b) < reach)
     };
+    let held = |condition: &EdgeCondition| match (condition.hold, edge_ends(body, &condition.edge)) {
+        (Hold::Normal, [a, b]) if (a[0] == b[0]) != (a[1] == b[1]) => [a[0] == b[0], a[1] == b[1]],
+        _ => condition.components(),
+    };
+    let same = |other: &EdgeCondition| (0..2).any(|d| held(own)[d] && held(other)[d]);
     !conditions.iter().enumerate().any(|(at, other)| at != number && same(other) && is_near(other))
 }
 

@@ -7,7 +7,7 @@ use super::prescribed::Reactions;
 use crate::checkpoint::{Archive, StateError};
 use crate::dynamics::constraints::Constraints;
 use crate::dynamics::edge_moments::{
-    EdgeMultipliers, Moment, Multipliers, along_mesh, is_alone, moments_of, multiplier_space,
+    EdgeMultipliers, Moment, Multipliers, along_mesh, is_whole_side, moments_of, multiplier_space,
 };
 use crate::dynamics::energy::ConditionSample;
 use crate::dynamics::failure::Failure;
@@ -48,7 +48,8 @@ impl EdgeConditions {
         constraints: &Constraints,
     ) -> Result<Option<Box<Self>>, Failure> {
         let conditions = body.conditions.clone();
-        let (mut moments, mut by_parts) = (Vec::new(), Vec::new());
+        let prescribed: BTreeMap<_, _> = constraints.iter().map(|(at, c, number)| ((at, c), number)).collect();
+        let mut moments = Vec::new();
         for (number, condition) in conditions.iter().enumerate() {
             let parts = smooth_parts(patch, body, &condition.edge);
             let lost = |place| Failure::LostCondition { body: 0, condition: number, place };
@@ -57,43 +58,38 @@ impl EdgeConditions {
                 functions.map(|functions| (*point, functions.values)).ok_or_else(|| lost(point.position))
             };
             let points = parts.iter().flatten().map(of_material).collect::<Result<Vec<_>, _>>()?;
-            let positions = parts.iter().flatten().map(|point| point.position);
-            let alone = is_alone(patch, body, &conditions, number);
-            let along = alone.then(|| along_mesh(patch, lattice.grid, positions)).flatten();
-            by_parts.push(along.is_none());
             let space = multiplier_space(patch, &parts);
-            let multipliers = along.unwrap_or(EdgeMultipliers::OfParts(&space));
+            let components = condition.components();
+            let is_fixed = |at, c: usize| components[c] && prescribed.contains_key(&(at, c));
+            let of_mesh = is_whole_side(patch, body, &conditions, number)
+                .then(|| along_mesh(patch, lattice.grid, &points, is_fixed))
+                .flatten();
+            let multipliers = of_mesh.unwrap_or(EdgeMultipliers::OfParts(&space));
             moments.extend(moments_of(number, condition.hold, multipliers, points.into_iter()).map_err(lost)?);
         }
         if moments.is_empty() {
             return Ok(None);
         }
-        let prescribed: BTreeMap<_, _> = constraints.iter().map(|(at, c, number)| ((at, c), number)).collect();
-        let (mut yielding, mut inverse, mut held) = (Vec::new(), Vec::new(), Vec::new());
-        for moment in moments {
-            let inverse_mass = |at: usize| 1.0 / mass.row_sums[at];
-            let of = |&(at, c, _): &(usize, usize, f64)| {
-                if prescribed.contains_key(&(at, c)) { 0.0 } else { inverse_mass(at) }
+        let (mut inverse, mut held) = (Vec::new(), Vec::new());
+        for (row, moment) in moments.iter().enumerate() {
+            let of = |&(at, component, share): &(usize, usize, f64)| match prescribed.get(&(at, component)) {
+                Some(&number) => {
+                    held.push((row, number, component, share));
+                    0.0
+                }
+                None => 1.0 / mass.row_sums[at],
             };
             let inverses: Vec<f64> = moment.shares.iter().map(of).collect();
-            if moment.yields(&inverses, inverse_mass) {
-                let on_side = |&(at, c, share)| Some((yielding.len(), *prescribed.get(&(at, c))?, c, share));
-                held.extend(moment.shares.iter().filter_map(on_side));
-                yielding.push(moment);
-                inverse.push(inverses);
-            } else if by_parts[moment.condition] {
+            if !moment.yields(&inverses, |at| 1.0 / mass.row_sums[at]) {
                 return Err(Failure::HeldTwice { body: 0, condition: moment.condition });
-            } // else a side holds all that this function moves
-        }
-        let acts = |number: &usize| yielding.iter().any(|moment| moment.condition == *number);
-        if let Some(condition) = (0..conditions.len()).find(|number| !acts(number)) {
-            return Err(Failure::HeldTwice { body: 0, condition });
+            }
+            inverse.push(inverses);
         }
         let last = conditions.len() - 1;
         let reactions = vec![Reaction::default(); conditions.len()];
         let multipliers =
-            Multipliers::new(yielding, inverse, 0.0).ok_or(Failure::HeldTwice { body: 0, condition: last })?;
-        if let Some(moment) = multipliers.dependent(INDEPENDENT, |condition| by_parts[condition]) {
+            Multipliers::new(moments, inverse, 0.0).ok_or(Failure::HeldTwice { body: 0, condition: last })?;
+        if let Some(moment) = multipliers.dependent(INDEPENDENT) {
             return Err(Failure::HeldTwice { body: 0, condition: moment.condition });
         }
         Ok(Some(Box::new(Self { conditions, multipliers, held, reactions })))

@@ -15,7 +15,7 @@
 use super::grid::{ImposedEnergy, NodalFields};
 use crate::checkpoint::{Archive, StateError};
 use crate::dynamics::edge_moments::{
-    EdgeMultipliers, Moment, Multipliers, along_mesh, is_alone, moments_of, multiplier_space,
+    EdgeMultipliers, Moment, Multipliers, along_mesh, is_whole_side, moments_of, multiplier_space,
 };
 use crate::dynamics::energy::ConditionSample;
 use crate::dynamics::failure::Failure;
@@ -46,8 +46,8 @@ pub(super) struct HeldEdges {
 #[derive(Debug, Clone)]
 struct HeldEdge {
     condition: EdgeCondition,
-    /// Whether no other comes near it.
-    alone: bool,
+    /// Whether it is a whole side of the body, with no other edge near.
+    is_whole_side: bool,
     space: SplineSpace,
     points: Vec<(Follower, SurfacePoint)>,
     reaction: Reaction,
@@ -69,7 +69,7 @@ impl HeldEdges {
             let points: Vec<_> = on_material.map(|point| (Follower::new(point.position), *point)).collect();
             let reaction = Reaction { velocity: [condition.prescribed.start()[1]; 2], ..Reaction::default() };
             (!points.is_empty()).then(|| HeldEdge {
-                alone: is_alone(patch, body, &conditions, number),
+                is_whole_side: is_whole_side(patch, body, &conditions, number),
                 space: multiplier_space(patch, &parts),
                 condition: condition.clone(),
                 points,
@@ -220,11 +220,15 @@ impl HeldEdges {
                 values
             };
             let lost = |place| Failure::LostCondition { body: 0, condition: number, place };
-            let positions = edge.points.iter().map(|(place, _)| place.position);
-            let along = edge.alone.then(|| along_mesh(patch, nodes.grid, positions)).flatten();
-            let multipliers = along.unwrap_or(EdgeMultipliers::OfParts(&edge.space));
-            let points = edge.points.iter().map(|(place, point)| (*point, functions(place)));
-            moments.extend(moments_of(number, edge.condition.hold, multipliers, points).map_err(lost)?);
+            let now = |(place, point): &(Follower, SurfacePoint)| {
+                (SurfacePoint { position: place.position, ..*point }, functions(place))
+            };
+            let points: Vec<_> = edge.points.iter().map(now).collect();
+            let components = edge.condition.components();
+            let is_fixed = |at, c: usize| components[c] && nodes.fixed.contains(&(at, c));
+            let of_mesh = edge.is_whole_side.then(|| along_mesh(patch, nodes.grid, &points, is_fixed)).flatten();
+            let multipliers = of_mesh.unwrap_or(EdgeMultipliers::OfParts(&edge.space));
+            moments.extend(moments_of(number, edge.condition.hold, multipliers, points.into_iter()).map_err(lost)?);
         }
         let inverse = |moment: &Moment| -> Option<Vec<f64>> {
             let free = |(at, component)| if nodes.fixed.contains(&(at, component)) { 0.0 } else { 1.0 };
