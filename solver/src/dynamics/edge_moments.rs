@@ -10,10 +10,10 @@
 //! (B M⁻¹ Bᵀ) λ = B M⁻¹ (f_ext − f_int) − B a_prescribed
 //! ```
 //!
-//! Along an edge that lies along the mesh, within a part of a span, μ are all functions that the body has
-//! there. Between multipliers that are fewer the edge buckles under a pressure, since a multiplier acts in
-//! the same direction however the edge turns. Along any other edge as many would hold all of the spans that
-//! it cuts.
+//! Along a whole side of a body that lies along the mesh, within a part of a span, μ are all functions that
+//! the body has there. Between multipliers that are fewer the side buckles under a pressure, since a
+//! multiplier acts in the same direction however the edge turns. Along an oblique edge as many would hold all
+//! of the spans that it cuts, and along a part of a side more than that part.
 //!
 //! The multipliers remove directions from the operator and add no stiffness, so the critical step is never
 //! shorter than that of the free body. They do work on what moves only: there is no energy of a penalty.
