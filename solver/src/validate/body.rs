@@ -16,7 +16,7 @@ const MOST_MACLAURIN: usize = 5;
 
 pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
     if scene.bodies.is_empty() {
-        findings.error("body", "there is no body", "add a [[body]] with name, material and shape");
+        findings.error("body", "there is no body", "add a [[body]]; without a shape it fills the mesh");
     }
     for (i, body) in scene.bodies.iter().enumerate() {
         let key = format!("body.{i}");
