@@ -84,7 +84,7 @@ impl Awake {
         let (strips, tiles) = (lattice.patch_strips(), lattice.tiles.len());
         let mut near = vec![false; strips * tiles];
         let is_awake = |cell: usize| driven[cell] || (self.computed[cell] && is_damaged(lattice, cell, phase));
-        let seen = fault!("cut-spans-wake-nothing", driven.len() => lattice.patch_rows() * tiles);
+        let seen = fault!("cut-spans-wake-nothing", driven.len() => lattice.patch_rows * tiles);
         for [strip, tile] in (0..seen).filter(|&cell| is_awake(cell)).flat_map(|cell| lattice.tiles_of_cell(cell)) {
             for around in strip.saturating_sub(1)..(strip + 2).min(strips) {
                 near[around * tiles..][tile.saturating_sub(1)..(tile + 2).min(tiles)].fill(true);
