@@ -7,10 +7,7 @@ use fisura::dynamics::time_plan::TimePlan;
 use fisura::linear_algebra::extremes::larger;
 use fisura::material::elasticity::ElasticModuli;
 use fisura::particles::spans::{largest_spans, smallest_span};
-use fisura::scene::{
-    Body, Crack, CrackModel, Fracture, Frame, Material, PhaseFieldInterval, Plane, Scene, SolverSettings, Split,
-    Transfer,
-};
+use fisura::scene::{Body, Crack, Frame, Material, Plane, Scene};
 use fisura::simulation::{Extent, Simulation};
 use fisura::validate::expected_size;
 use fisura_reports::number::{duration, plain};
@@ -26,10 +23,12 @@ use crate::{console, scene_input};
 mod growth;
 mod long_ends;
 mod trial;
+mod words;
 
 use growth::Tried;
 use long_ends::LongEnds;
 use trial::{Trial, spans};
+use words::{solves, strength, transfer, words};
 
 /// Points or control points up to which a scene is made ready to be checked: seconds, and less than 1 GiB.
 const MOST_PREPARED: usize = 1_000_000;
@@ -314,71 +313,6 @@ impl MaterialFindings {
         let fracture = self.fracture.iter().map(|words| format!("; {words}{}", strength.clone().unwrap_or_default()));
         let fracture: String = fracture.collect();
         format!("{name}; wave speed {} m/s{ratio}{fracture}", plain(self.wave_speed_m_per_s, 5))
-    }
-}
-
-/// A transfer in words, with what it loses.
-fn transfer(transfer: Transfer) -> String {
-    match transfer {
-        Transfer::Apic => "apic, the default: keeps angular momentum, damps motion that varies over a span".into(),
-        Transfer::Tpic => "tpic: nearly keeps angular momentum, damps motion that varies over a span".into(),
-        Transfer::Flip => "flip: loses spin as a body turns, and keeps velocities that the mesh cannot see".into(),
-        Transfer::Pic => "pic: damps all motion and keeps no spin".into(),
-        Transfer::Xpic(order) => format!("xpic of order {order}: loses spin as a body turns"),
-    }
-}
-
-/// Surface energy and split in words.
-fn words(fracture: &Fracture) -> String {
-    let model = match fracture.model {
-        CrackModel::At2 => "AT2".to_string(),
-        CrackModel::At1 => "AT1".to_string(),
-        CrackModel::PfCzm { softening, .. } => {
-            format!("PF-CZM with {} softening", softening.word())
-        }
-    };
-    let split = match fracture.split {
-        Split::Spectral => format!("{model}, spectral split"),
-        Split::VolumetricDeviatoric => format!("{model}, volumetric-deviatoric split"),
-        Split::StarConvex(gamma) => format!("{model}, star-convex split with {gamma}"),
-        Split::Rankine => format!("{model}, driven by the largest principal stress"),
-        Split::None => format!("{model}, no split"),
-    };
-    let anisotropy = fracture.anisotropy.map(|anisotropy| {
-        let [xx, yy, _] = anisotropy.components();
-        format!(", Gc times {:.3} along x and {:.3} along y", yy.sqrt(), xx.sqrt())
-    });
-    let random = fracture.random.map(|random| {
-        format!(", Gc random (Weibull, modulus {}, correlation {:e} m)", random.modulus, random.correlation)
-    });
-    let of_mesh = fracture.mesh_toughness.then(|| ", Gc less what cracks cost on this mesh".to_string());
-    [Some(split), anisotropy, random, of_mesh].into_iter().flatten().collect()
-}
-
-/// How the phase field is solved, in words.
-fn solves(settings: &SolverSettings) -> String {
-    let interval = match settings.phase_field_interval {
-        PhaseFieldInterval::Steps(1) => "in every step".to_string(),
-        PhaseFieldInterval::Steps(steps) => format!("once in {steps} steps"),
-        PhaseFieldInterval::Automatic => "once in up to 4 steps".to_string(),
-    };
-    format!("solved {interval}, tolerance {:e}", settings.phase_field_tolerance)
-}
-
-/// Largest stress of a uniform bar (Pa), as if all of its energy drove: `9/16 √(E Gc/(6 l0))`, with AT1 `√(3
-/// E Gc/(16 l0))`, with a cohesive crack `ft √(E/E0)` for Young's modulus E0; in plane strain E is over 1 −
-/// nu², unless the largest principal stress drives.
-fn strength(material: &Material, fracture: &Fracture, plane: Plane) -> f64 {
-    let Material { young_modulus, poisson_ratio, .. } = *material;
-    let modulus = match plane {
-        Plane::Strain if fracture.split != Split::Rankine => young_modulus / (1.0 - poisson_ratio * poisson_ratio),
-        _ => young_modulus,
-    };
-    let unit = modulus * fracture.critical_energy_release_rate / fracture.length_scale;
-    match fracture.model {
-        CrackModel::At2 => 9.0 / 16.0 * (unit / 6.0).sqrt(),
-        CrackModel::At1 => (3.0 * unit / 16.0).sqrt(),
-        CrackModel::PfCzm { tensile_strength, .. } => tensile_strength * (modulus / young_modulus).sqrt(),
     }
 }
 

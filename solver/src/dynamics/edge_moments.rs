@@ -44,6 +44,8 @@ const LEAST: f64 = 0.5;
 const BARE: f64 = 1e-4;
 /// Parts by which an edge may be too short for their number.
 const ROUND_OFF: f64 = 1e-9;
+/// Distance of two places that counts as none, in sizes of what they lie on.
+const NEAR: f64 = 1e-9;
 /// Yield of a multiplier at control points that can move, of that at all of them, that counts as none.
 const YIELDS: f64 = 1e-9;
 
@@ -263,16 +265,16 @@ pub(in crate::dynamics) fn is_whole_side(
     number: usize,
 ) -> bool {
     let own = &conditions[number];
+    let Some(across) = across(body, own) else { return false };
     let [a, b] = edge_ends(body, &own.edge);
-    let Some(across) = (0..2).find(|&d| a[d] == b[d] && a[1 - d] != b[1 - d]) else { return false };
     let goes_on = |[end, other]: [[f64; 2]; 2]| {
-        let beyond = [-BESIDE, BESIDE].map(|beside| {
+        let beyond = BESIDE * (end[1 - across] - other[1 - across]);
+        [-beyond, beyond].into_iter().any(|beside| {
             let mut place = end;
-            place[1 - across] += BESIDE * (end[1 - across] - other[1 - across]);
-            place[across] += beside * (end[1 - across] - other[1 - across]);
-            place
-        });
-        beyond.iter().any(|place| body.shape.contains(*place))
+            place[1 - across] += beyond;
+            place[across] += beside;
+            body.shape.contains(place)
+        })
     };
     if goes_on([a, b]) || goes_on([b, a]) {
         return false;
@@ -283,17 +285,25 @@ pub(in crate::dynamics) fn is_whole_side(
     };
     let reach = patch.spaces.iter().map(reach).fold(0.0, larger);
     let is_near = |other: &EdgeCondition| {
-        let edges = [curve_of(body, &other.edge)];
-        let places: Vec<_> = steps_along(&edges, 0.5 * patch.shortest_span()).flatten().collect();
-        let beside = places.iter().all(|place| place[across] == places[0][across]) && places[0][across] != a[across];
-        !beside && places.iter().any(|&place| distance_to_segment(place, a, b) < reach)
+        let offset = (edge_ends(body, &other.edge)[0][across] - a[across]).abs();
+        let beside = self::across(body, other) == Some(across) && offset > NEAR * reach;
+        let part = [curve_of(body, &other.edge)];
+        let mut places = steps_along(&part, 0.5 * patch.shortest_span()).map(|[place, _]| place);
+        !beside && places.any(|place| distance_to_segment(place, a, b) < reach)
     };
-    let held = |condition: &EdgeCondition| match (condition.hold, edge_ends(body, &condition.edge)) {
-        (Hold::Normal, [a, b]) if (a[0] == b[0]) != (a[1] == b[1]) => [a[0] == b[0], a[1] == b[1]],
+    let held = |condition: &EdgeCondition| match (condition.hold, self::across(body, condition)) {
+        (Hold::Normal, Some(d)) => [d == 0, d == 1],
         _ => condition.components(),
     };
     let same = |other: &EdgeCondition| (0..2).any(|d| held(own)[d] && held(other)[d]);
     !conditions.iter().enumerate().any(|(at, other)| at != number && same(other) && is_near(other))
+}
+
+/// The direction across an edge that lies along the mesh; `None` for any other edge.
+fn across(body: &Body, condition: &EdgeCondition) -> Option<usize> {
+    let [a, b] = edge_ends(body, &condition.edge);
+    let size = (b[0] - a[0]).hypot(b[1] - a[1]);
+    (0..2).find(|&d| size > 0.0 && (b[d] - a[d]).abs() <= NEAR * size)
 }
 
 /// Splines along an edge for multipliers; linear on an edge that is shorter than a part.

@@ -62,7 +62,7 @@ pub enum Failure {
     #[error("boundary.{} and boundary.{} prescribe the control point between them differently", .0[0], .0[1])]
     Contradiction([usize; 2]),
     /// No static state was found: the largest force out of balance, of the largest nodal force.
-    #[error("no static state was found: {0:.1e} of the largest nodal force is out of balance")]
+    #[error("no static state was found: {}", out_of_balance(*.0))]
     NoEquilibrium(f64),
     /// The loads of a static start accelerate a body that nothing holds: their resultant, of their
     /// magnitudes.
@@ -85,6 +85,14 @@ pub enum Failure {
         /// Place, m.
         place: [f64; 2],
     },
+}
+
+fn out_of_balance(residual: f64) -> String {
+    if residual.is_nan() {
+        "the displacements are not numbers".to_string()
+    } else {
+        format!("{residual:.1e} of the largest nodal force is out of balance")
+    }
 }
 
 impl Failure {

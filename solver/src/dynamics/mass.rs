@@ -97,7 +97,7 @@ impl MassMatrix {
     pub(crate) fn divide_in_use(&self, in_use: &ActiveColumns, grid: ControlGrid, forces: &mut VectorField) {
         let MassKind::Lumped { inverse } = &self.kind else { return self.divide(forces) };
         for force in forces {
-            in_use.for_each_part(grid, force, |used, force| {
+            in_use.for_each_part(grid, [force], |used, [force]| {
                 force.iter_mut().zip(&inverse[used]).for_each(|(f, inverse)| *f *= inverse);
             });
         }

@@ -173,8 +173,12 @@ impl TotalFrame {
     fn predict(&mut self, dt: f64) {
         let Self { in_use, grid, velocity, displacement, acceleration, .. } = self;
         for ((v, u), a) in velocity.iter_mut().zip(displacement).zip(acceleration) {
-            in_use.for_each_part(*grid, v, |used, v| v.iter_mut().zip(&a[used]).for_each(|(v, a)| *v += 0.5 * dt * a));
-            in_use.for_each_part(*grid, u, |used, u| u.iter_mut().zip(&v[used]).for_each(|(u, v)| *u += dt * v));
+            in_use.for_each_part(*grid, [v, u], |used, [v, u]| {
+                for ((v, u), a) in v.iter_mut().zip(u).zip(&a[used]) {
+                    *v += 0.5 * dt * a;
+                    *u += dt * *v;
+                }
+            });
         }
         self.lattice.spread(&mut self.displacement);
         self.time += dt;
@@ -184,7 +188,7 @@ impl TotalFrame {
     fn correct(&mut self, dt: f64) {
         let part = fault!("whole-kick", 0.5 * dt => dt);
         for (v, a) in self.velocity.iter_mut().zip(&self.acceleration) {
-            self.in_use.for_each_part(self.grid, v, |used, v| {
+            self.in_use.for_each_part(self.grid, [v], |used, [v]| {
                 v.iter_mut().zip(&a[used]).for_each(|(v, a)| *v += part * a);
             });
         }
@@ -277,7 +281,7 @@ impl TotalFrame {
         let mass = &self.mass.row_sums;
         for (component, (a, f)) in self.acceleration.iter_mut().zip(&self.internal).enumerate() {
             let gravity = fault!("gravity-upwards", self.gravity[component] => -self.gravity[component]);
-            self.in_use.for_each_part(self.grid, a, |used, a| {
+            self.in_use.for_each_part(self.grid, [a], |used, [a]| {
                 let forces = f[used.clone()].iter().zip(&mass[used]);
                 a.iter_mut().zip(forces).for_each(|(a, (f, m))| *a = gravity * m - f);
             });

@@ -69,18 +69,22 @@ impl ActiveColumns {
         rows.flat_map(of_row)
     }
 
-    /// Calls `f` for every range of a field (several at once), with its place in the field.
-    pub(crate) fn for_each_part(
+    /// Calls `f` for every range (several at once) with its part of each of some fields.
+    pub(crate) fn for_each_part<const N: usize>(
         &self,
         grid: ControlGrid,
-        field: &mut [f64],
-        f: impl Fn(Range<usize>, &mut [f64]) + Sync,
+        fields: [&mut Vec<f64>; N],
+        f: impl Fn(Range<usize>, [&mut [f64]; N]) + Sync,
     ) {
         let chunk = CHUNK_ROWS * grid.stride;
-        field.par_chunks_mut(chunk).enumerate().for_each(|(number, part)| {
-            let rows = number * CHUNK_ROWS..((number + 1) * CHUNK_ROWS).min(grid.rows);
+        let mut chunks = fields.map(|field| field.chunks_mut(chunk));
+        let parts =
+            (0..grid.rows.div_ceil(CHUNK_ROWS)).map(|_| chunks.each_mut().map(|c| c.next().unwrap_or_default()));
+        parts.collect::<Vec<_>>().into_par_iter().enumerate().for_each(|(number, mut part)| {
+            let (first, rows) = (number * chunk, number * CHUNK_ROWS..((number + 1) * CHUNK_ROWS).min(grid.rows));
             for used in self.within(grid, rows) {
-                f(number * chunk + used.start..number * chunk + used.end, &mut part[used]);
+                let fields = part.each_mut().map(|field| &mut field[used.clone()]);
+                f(first + used.start..first + used.end, fields);
             }
         });
     }

@@ -45,7 +45,11 @@ pub fn advance(displacement: &Gradient, step: &Gradient) -> Gradient {
 pub fn hencky_strain(displacement: &Gradient) -> [f64; 3] {
     let [[xx, xy], [yx, yy]] = *displacement;
     let half_log = 0.5 * (xx + yy + (xx * yy - xy * yx)).ln_1p();
-    let ([mean, half_difference, shear], radius) = squared_stretch(displacement);
+    // Mean, half difference and shear of F Fᵀ − I.
+    let mean = xx + yy + 0.5 * (xx * xx + xy * xy + yx * yx + yy * yy);
+    let half_difference = xx - yy + 0.5 * (xx * xx + xy * xy - yx * yx - yy * yy);
+    let shear = xy + yx + (xx * yx + xy * yy);
+    let radius = (half_difference * half_difference + shear * shear).sqrt();
     let ratio = radius / (1.0 + mean);
     let factor = if ratio < STRETCHED {
         atanh_over(ratio) / (2.0 * (1.0 + mean))
@@ -55,21 +59,6 @@ pub fn hencky_strain(displacement: &Gradient) -> [f64; 3] {
     let deviator = factor * half_difference;
     let strain = [half_log + deviator, half_log - deviator, factor * shear];
     fault!("hencky-without-half", strain => strain.map(|e| 2.0 * e))
-}
-
-/// Mean, half difference and shear of `F Fᵀ − I`, and the radius of its eigenvalues about the mean.
-#[inline(always)]
-fn squared_stretch([[xx, xy], [yx, yy]]: &Gradient) -> ([f64; 3], f64) {
-    let mean = xx + yy + 0.5 * (xx * xx + xy * xy + yx * yx + yy * yy);
-    let half_difference = xx - yy + 0.5 * (xx * xx + xy * xy - yx * yx - yy * yy);
-    let shear = xy + yx + (xx * yx + xy * yy);
-    ([mean, half_difference, shear], (half_difference * half_difference + shear * shear).sqrt())
-}
-
-/// Smallest principal stretch of a displacement gradient, squared.
-pub(crate) fn least_squared_stretch(displacement: &Gradient) -> f64 {
-    let ([mean, ..], radius) = squared_stretch(displacement);
-    mean - radius + 1.0
 }
 
 /// `A (I + A)⁻¹`: the same motion as `A = dt grad v`, differentiated with respect to the positions it ends

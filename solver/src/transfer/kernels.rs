@@ -6,10 +6,12 @@
 //! Σ V Gc ((1 − c)²/(4 l0) + l0 |grad c|²)             surface energy of the crack                E 3
 //! ```
 
-use crate::linear_algebra::extremes::smaller;
+use crate::linear_algebra::extremes::{larger, smaller};
 use crate::linear_algebra::lane::{Lane, prefetch};
+use crate::material::degradation::BROKEN;
 use crate::material::degradation::FractureModel;
 use crate::material::elasticity::ElasticModuli;
+use crate::material::hencky::largest_principal;
 use crate::material::split::{driving_energy, split};
 use crate::transfer::point_kernel::{PointKernel, PointValues, Stress};
 
@@ -213,6 +215,64 @@ impl PointKernel for HeldPhaseStress<'_> {
         let state = split(&self.moduli, self.model.split, strain(values.gradient));
         Stress::symmetric(state.degraded::<FMA>(self.model.degradation(self.phase[at])).1)
     }
+}
+
+/// Smallest principal stretch, squared: the smaller eigenvalue of `F Fᵀ` (see [`crate::material::hencky`]).
+#[derive(Debug)]
+pub(crate) struct LeastStretch<'a> {
+    /// Phase field at the points of the strip, of which those that are broken do not count; empty if all
+    /// count.
+    pub phase: &'a [Lane],
+    /// Smallest of the strip; not a number if one is not.
+    pub squared: Lane,
+}
+
+impl PointKernel for LeastStretch<'_> {
+    #[inline(always)]
+    fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress {
+        let [xx, xy, yx, yy] = values.gradient;
+        let mean = xx + yy + (xx * xx + xy * xy + yx * yx + yy * yy) * 0.5;
+        let half_difference = xx - yy + (xx * xx + xy * xy - yx * yx - yy * yy) * 0.5;
+        let shear = xy + yx + (xx * yx + xy * yy);
+        let radius = (half_difference * half_difference + shear * shear).map(f64::sqrt);
+        let weight = of_intact(weight, self.phase, at);
+        let squared = (mean - radius + Lane::splat(1.0)).zip(weight, |x, w| if w > 0.0 { x } else { f64::INFINITY });
+        self.squared = self.squared.zip(squared, smaller);
+        Stress::ZERO
+    }
+}
+
+/// What bounds the largest [`Distortion`](crate::material::hencky::Distortion).
+#[derive(Debug)]
+pub(crate) struct LargestDistortion<'a> {
+    /// Phase field at the points of the strip, as in [`LeastStretch`].
+    pub phase: &'a [Lane],
+    /// Tangent of the largest angle of the strip, infinite from a right angle on, or its largest strain where
+    /// nothing can break; NaN if one is.
+    pub size: Lane,
+}
+
+impl PointKernel for LargestDistortion<'_> {
+    #[inline(always)]
+    fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress {
+        let [xx, xy, yx, yy] = values.gradient;
+        let (sine, cosine) = (yx - xy, xx + yy + Lane::splat(2.0));
+        let tangent = sine.zip(cosine, |sine, cosine| if cosine <= 0.0 { f64::INFINITY } else { sine.abs() / cosine });
+        let weight = of_intact(weight, self.phase, at);
+        let turned = tangent.zip(weight, |tangent, w| if w > 0.0 { tangent } else { 0.0 });
+        self.size = self.size.zip(turned, larger);
+        if self.phase.is_empty() {
+            let strain = |l: usize| largest_principal([xx.0[l], yy.0[l], 0.5 * (xy.0[l] + yx.0[l])]);
+            self.size = self.size.zip(Lane(std::array::from_fn(strain)), larger);
+        }
+        Stress::ZERO
+    }
+}
+
+/// Weights of a batch, zero for broken points; `phase` is empty if all count.
+#[inline(always)]
+fn of_intact(weight: Lane, phase: &[Lane], at: usize) -> Lane {
+    phase.get(at).map_or(weight, |c| weight.zip(*c, |w, c| if c < BROKEN { 0.0 } else { w }))
 }
 
 /// Surface energy `Gc [(1 − c)²/(4 l0) + l0 |grad c|²]` (E 3) and the smallest c.

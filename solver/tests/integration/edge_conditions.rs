@@ -165,6 +165,25 @@ fn parts_too_short_to_be_independent_are_refused() {
     assert!(matches!(starts(2, &short), Err(Failure::HeldTwice { .. })), "0.3 spans each");
 }
 
+/// All functions of the body along either part would prescribe the motion of the gap twice.
+#[test]
+fn parts_of_a_side_a_span_apart_move_differently() {
+    for degree in [1, 2, 3] {
+        let mut scene = held_in_parts(degree, &[[0.0, 0.4], [0.4 + 1.0 / 5.59, 1.0]]);
+        let body = &mut scene.bodies[0];
+        body.tractions.clear();
+        body.conditions[1].prescribed = Prescribed::velocity([0.1, 0.0]);
+        scene.equilibrium = false;
+        let samples = run(&scene).1;
+        let last = &samples[4];
+        assert!(last.closure.abs() <= 1e-9 * last.largest_term(), "p = {degree}: {last:?}");
+        // As if all of the body had the strain of the gap.
+        let strain = 0.1 * last.time / (0.0043 / 5.59);
+        let most = 32e9 * strain * strain * 0.0061 * 0.0043;
+        assert!(last.elastic < most, "p = {degree}: {:e} J/m instead of less than {most:e}", last.elastic);
+    }
+}
+
 #[test]
 fn what_is_prescribed_twice_is_refused() {
     let keys = |scene: &Scene| {

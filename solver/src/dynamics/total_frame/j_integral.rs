@@ -5,10 +5,10 @@
 //! J = ∫ (sigma_ij u_j,1 − (psi + rho v·v/2) δ_1i) q,i + rho ((a − b)·u,1 − v·v,1) q dA
 //! ```
 //!
-//! psi is the degraded elastic energy, b gravity, v the velocity less its mean in the domain: a constant
-//! velocity adds nothing to J, but the error of the quadrature beside a slit times itself. q is 1 within half
-//! of the radius about the tip, so that the process zone does not count, and falls smoothly to 0 at the
-//! radius. The faces of the crack carry no load and lie along axis 1.
+//! psi is the degraded elastic energy and b gravity. v is the velocity less its mean in the domain: J does
+//! not depend on a constant velocity, but the error of the quadrature beside a slit would be multiplied by
+//! its square. q is 1 within half of the radius about the tip, so that the process zone does not count, and
+//! falls smoothly to 0 at the radius. The faces of the crack carry no load and lie along axis 1.
 
 use super::TotalFrame;
 use super::domain::Domain;

@@ -109,10 +109,12 @@ impl TotalFrame {
     /// The point that is turned inside out furthest, if one is; small strains know none.
     pub(crate) fn inverted_point(&self) -> Option<InvertedPoint> {
         let (mut worst, mut point) = (None, 0);
-        self.for_each_gradient(None, |batch, lane, gradient| {
-            let (_, determinant) = self.strain(gradient);
+        self.lattice.for_each_point(|batch, lane, position, _| {
+            let functions = self.lattice.functions_at(&self.patch, batch, lane);
+            let [x, y] = self.displacement.each_ref().map(|u| functions.interpolate(u));
+            let (_, determinant) = self.strain([x.gradient, y.gradient]);
             if determinant <= 0.0 {
-                let inverted = InvertedPoint { point, position: self.lattice.position(batch, lane), determinant };
+                let inverted = InvertedPoint { point, position, determinant };
                 worst = Some(worst.map_or(inverted, |worst: InvertedPoint| worst.worse(inverted)));
             }
             point += 1;

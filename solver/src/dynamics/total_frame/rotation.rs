@@ -1,44 +1,44 @@
 //! How far material is distorted, which small strains do not follow.
 
 use super::TotalFrame;
-use crate::linear_algebra::lane::LANES;
+use crate::linear_algebra::extremes::larger;
+use crate::linear_algebra::lane::Lane;
 use crate::material::degradation::BROKEN;
-use crate::material::hencky::{Distortion, Gradient};
-use crate::phase_field::fracture::LatticeFracture;
+use crate::material::hencky::Distortion;
 use crate::scene::Kinematics;
-use crate::transfer::directional::gradients;
+use crate::transfer::kernels::LargestDistortion;
+use crate::transfer::point_kernel::Fields;
+use crate::transfer::sweep::sweep;
 
 impl TotalFrame {
     /// Where material that is not broken is distorted most (m, at t = 0) and how, if that is beyond a limit;
     /// `None` with finite strains.
     pub(crate) fn distorted_beyond(&self, limit: f64) -> Option<([f64; 2], Distortion)> {
-        if self.kinematics == Kinematics::Finite {
+        if self.kinematics == Kinematics::Finite || self.largest_distortion() <= limit {
             return None;
         }
         let mut most: Option<([f64; 2], Distortion)> = None;
-        self.for_each_gradient(self.fracture.as_ref(), |batch, lane, gradient| {
+        self.lattice.for_each_point(|batch, lane, position, _| {
+            let functions = self.lattice.functions_at(&self.patch, batch, lane);
+            let gradient = self.displacement.each_ref().map(|u| functions.interpolate(u).gradient);
+            let broken = self.fracture.as_ref().is_some_and(|fracture| fracture.phase[batch][lane] < BROKEN);
             let found = Distortion::of(&gradient, self.fracture.is_none());
-            if found.size() > most.map_or(limit, |(_, most)| most.size()) {
-                most = Some((self.lattice.position(batch, lane), found));
+            if !broken && found.size() > most.map_or(limit, |(_, most)| most.size()) {
+                most = Some((position, found));
             }
         });
         most
     }
 
-    /// Calls `f` with the batch and the lane of every point that is not broken, and its displacement
-    /// gradient; without `breaking` all count.
-    pub(super) fn for_each_gradient(
-        &self,
-        breaking: Option<&LatticeFracture>,
-        mut f: impl FnMut(usize, usize, Gradient),
-    ) {
-        let gradients = gradients(&self.lattice, &self.displacement);
-        for (batch, [xx, xy, yx, yy]) in gradients.iter().enumerate().take(self.lattice.batches()) {
-            let weight = self.lattice.weights_of(batch);
-            let is_broken = |lane: usize| breaking.is_some_and(|fracture| fracture.phase[batch][lane] < BROKEN);
-            for lane in (0..LANES).filter(|&lane| weight[lane] > 0.0 && !is_broken(lane)) {
-                f(batch, lane, [[xx[lane], xy[lane]], [yx[lane], yy[lane]]]);
-            }
-        }
+    /// An upper bound: the tangent of the largest angle, or the largest strain of a body that cannot break.
+    fn largest_distortion(&self) -> f64 {
+        let lattice = &self.lattice;
+        let phase = self.fracture.as_ref().map_or(&[][..], |fracture| &fracture.phase);
+        let mut phases = phase.chunks(lattice.strip_batches());
+        let mut kernel = |_| LargestDistortion { phase: phases.next().unwrap_or_default(), size: Lane::ZERO };
+        let mut kernels: Vec<_> = (0..lattice.strips()).map(&mut kernel).collect();
+        let fields = Fields { displacement: [&self.displacement[0], &self.displacement[1]], phase: &[] };
+        sweep(lattice, fields, &mut kernels, None);
+        kernels.iter().flat_map(|kernel| kernel.size.0).fold(0.0, larger)
     }
 }

@@ -7,15 +7,14 @@ use crate::dynamics::critical_step::{StiffnessOperator, highest_frequency};
 use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::extremes::smaller;
 use crate::linear_algebra::lane::Lane;
-use crate::material::hencky::least_squared_stretch;
 use crate::phase_field::fracture::LatticeFracture;
 use crate::scene::{Kinematics, Split};
 use crate::transfer::directional::{gradients, sweep_along};
 use crate::transfer::elastic_forces::elastic_forces;
 use crate::transfer::finite::sweep_with;
-use crate::transfer::kernels::{ElasticStress, HeldPhaseStress};
+use crate::transfer::kernels::{ElasticStress, HeldPhaseStress, LeastStretch};
 use crate::transfer::point_kernel::Fields;
-use crate::transfer::sweep::StripForces;
+use crate::transfer::sweep::{StripForces, sweep};
 
 /// Stiffening, over that at which the critical step was last taken, at which it is taken again.
 const NOTICEABLE: f64 = 1.5;
@@ -45,11 +44,17 @@ impl TotalFrame {
     /// direction adds as much of the stress at most. Broken points that do not resist compression are left
     /// out: they may be crushed to nothing.
     fn stiffening(&self) -> f64 {
-        let crushed = |fracture: &&LatticeFracture| matches!(fracture.model.split, Split::None | Split::Rankine);
-        let mut squared = 1.0;
-        self.for_each_gradient(self.fracture.as_ref().filter(crushed), |_, _, gradient| {
-            squared = smaller(squared, least_squared_stretch(&gradient));
-        });
+        let lattice = &self.lattice;
+        let degraded =
+            self.fracture.as_ref().filter(|fracture| matches!(fracture.model.split, Split::None | Split::Rankine));
+        let phase = degraded.map_or(&[][..], |fracture| &fracture.phase);
+        let mut phases = phase.chunks(lattice.strip_batches());
+        let mut kernel = |_| LeastStretch { phase: phases.next().unwrap_or_default(), squared: Lane::splat(1.0) };
+        let mut kernels: Vec<_> = (0..lattice.strips()).map(&mut kernel).collect();
+        let fields = Fields { displacement: [&self.displacement[0], &self.displacement[1]], phase: &[] };
+        sweep(lattice, fields, &mut kernels, None);
+        let all = kernels.iter().flat_map(|kernel| kernel.squared.0);
+        let squared = all.fold(1.0, smaller);
         (1.0 - squared.ln()) / squared
     }
 
