@@ -1,4 +1,4 @@
-"""What a crack costs on a mesh: surface energy of a line of broken quadrature points, AT2, one dimension across the crack.
+"""What a crack costs on a mesh: surface energy of a line of broken quadrature points, one dimension across the crack.
 
 Minimises  sum_q w_q [(1 - c)^2/(4 l0) + l0 c'^2 + B_q c^2/(4 l0)]  over splines of degree p on equal spans h, l0 = 1, Gc = 1. B = 4 l0 H/Gc is
 `BROKEN` at broken points and 0 elsewhere. A cost counts the first two terms alone, in Gc: 1 in the limit h -> 0. Standard library only.
@@ -6,6 +6,9 @@ Minimises  sum_q w_q [(1 - c)^2/(4 l0) + l0 c'^2 + B_q c^2/(4 l0)]  over splines
 Columns of `crack-cost.csv`: spans h in l0; rows are quadrature points across the crack. `one_row` is the cheapest point of a span, `one_row_dearest`
 the dearest; `one_row_b10`, `_b100`, `_b1000` have B of that value instead (large but finite history). `symmetry_...` are half models whose line of
 symmetry is an end of the spline, both sides counted.
+
+AT1: minimises  3/8 sum_q w_q [(1 - c)/b + b c'^2 + B_q c^2/b], b = 2 l0 = 2, over control values between 0 and 1. No control value is negative, so
+where c vanishes at a point it does so in the whole span, and a row costs more the larger its B is. `crack-cost-at1.csv` has the cost for three B.
 """
 
 import csv
@@ -118,6 +121,33 @@ def cases(degree, n, h, strength=BROKEN):
     }
 
 
+def cost_at1(degree, points, h, strength):
+    """Cost of a crack of AT1 with one broken row, by Gauss-Seidel with bounds."""
+    line = Line(degree, points, h)
+    size, b = line.unknowns, 2.0
+    matrix, right = [[0.0] * (2 * degree + 1) for _ in range(size)], [0.0] * size
+    for q, (first, values, slopes, weight, _) in enumerate(line.rows):
+        drive = 2 * weight * strength * 3 / (8 * b) if q == line.index(0, 0) else 0.0
+        for i in range(degree + 1):
+            right[first + i] += 0.375 * weight * values[i] / b
+            for j in range(degree + 1):
+                matrix[first + i][degree + j - i] += 0.75 * weight * b * slopes[i] * slopes[j] + drive * values[i] * values[j]
+    c, change = [1.0] * size, 1.0
+    while change > 1e-12:
+        change = 0.0
+        for i in range(size):
+            near = range(max(0, i - degree), min(size, i + degree + 1))
+            others = sum(matrix[i][degree + j - i] * c[j] for j in near if j != i)
+            value = min(1.0, max(0.0, (right[i] - others) / matrix[i][degree]))
+            change, c[i] = max(change, abs(value - c[i])), value
+    cost = 0.0
+    for first, values, slopes, weight, _ in line.rows:
+        at = [c[first + i] for i in range(degree + 1)]
+        value, slope = (sum(f * a for f, a in zip(functions, at)) for functions in (values, slopes))
+        cost += 0.375 * weight * ((1 - value) / b + b * slope**2)
+    return cost
+
+
 def main():
     with open(Path(__file__).with_name("crack-cost.csv"), "w", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
@@ -128,6 +158,12 @@ def main():
                     table.writerow(["degree", "points", "h_over_l0", *costs])
                 table.writerow([degree, n, h, *(f"{value:.8f}" for value in costs.values())])
                 print(degree, n, h, {name: round(value, 4) for name, value in costs.items()})
+    with open(Path(__file__).with_name("crack-cost-at1.csv"), "w", newline="") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(["degree", "points", "h_over_l0", "one_row_b1000", "one_row_b10000", "one_row_b1e8"])
+        for degree, n in ((1, 2), (2, 2)):
+            for h in (2, 1.4, 1, 0.7, 0.5):
+                table.writerow([degree, n, h, *(f"{cost_at1(degree, n, h, b):.8f}" for b in (1e3, 1e4, 1e8))])
 
 
 if __name__ == "__main__":

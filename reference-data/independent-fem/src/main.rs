@@ -84,6 +84,9 @@ struct Options {
     /// A problem on quadrilaterals with AT1; elastic with --frozen
     #[arg(long, conflicts_with = "kalthoff")]
     problem: Option<Problem>,
+    /// With --problem: Gc divided by what a crack costs on elements of size h
+    #[arg(long, requires = "problem")]
+    mesh_toughness: bool,
     /// With --problem ring: seed of the random toughness
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
@@ -143,6 +146,7 @@ fn run_mapped(options: &Options, problem: Problem) -> Result<(), Box<dyn Error>>
         h: options.h_mm * 1e-3,
         b: 2e-3 * options.length_scale_mm,
         cracks: !options.frozen,
+        mesh_toughness: options.mesh_toughness,
         seed: options.seed,
         end: options.end_us * 1e-6,
         interval: options.interval_us * 1e-6,

@@ -29,6 +29,9 @@ pub struct Mapped {
     pub b: f64,
     /// Whether it cracks.
     pub cracks: bool,
+    /// Gc over 1 + 3 h/(8 b), what a crack of AT1 costs on elements of size h (Bourdin et al. 2008), where
+    /// they have that size: it lowers the strength, too.
+    pub mesh_toughness: bool,
     /// Seed of the random toughness of the ring; the same everywhere without one.
     pub seed: Option<u64>,
     /// Time at the end, and between samples, s.
@@ -76,11 +79,18 @@ impl Mapped {
         Material { density, toughness, length_scale: 0.5 * self.b, surface: Surface::At1, ..elastic }
     }
 
+    /// Gc over that of the material where elements have the size h.
+    fn relative_toughness(&self) -> f64 {
+        if self.mesh_toughness { 1.0 / (1.0 + 0.375 * self.h / self.b) } else { 1.0 }
+    }
+
     fn strip(&self) -> QuadBody {
         let x = lines(&[(0.04, self.h)]);
         let y = lines(&[(1e-3, self.h), (4e-3, 2.0 * self.h)]);
         let material = self.material(32e9, 0.2, 2450.0, 3.0);
-        let mut body = QuadBody::new(Quads::between(&x, &y), material, Split::Spectral, |_| 1.0);
+        let (of_mesh, mesh) = (self.relative_toughness(), Quads::between(&x, &y));
+        let toughness = |[_, y]: [f64; 2]| if y < 1e-3 { of_mesh } else { 1.0 };
+        let mut body = QuadBody::new(mesh, material, Split::Spectral, toughness);
         for (n, [x, y]) in body.mesh.nodes.clone().into_iter().enumerate() {
             let seeded = y == 0.0 && x <= 8e-3 + 1e-9;
             body.held[n] = [y == 4e-3, y == 4e-3 || (y == 0.0 && !seeded)];
@@ -97,7 +107,8 @@ impl Mapped {
         let mesh = Quads::ring(0.08, 0.15, [(0.07 / self.h).round() as usize, around]);
         let field = self.seed.map(|seed| Toughness { modulus: 10.0, correlation: 5e-3, seed });
         let material = self.material(210e9, 0.3, 7850.0, 20e3);
-        QuadBody::new(mesh, material, Split::Rankine, |place| field.map_or(1.0, |field| field.at(place)))
+        let of_mesh = self.relative_toughness();
+        QuadBody::new(mesh, material, Split::Rankine, |place| of_mesh * field.map_or(1.0, |field| field.at(place)))
     }
 
     fn arrest(&self) -> QuadBody {
@@ -132,7 +143,10 @@ impl Mapped {
             x > 45e-3 && x < 75e-3 && (y - 35e-3).abs() < half
         };
         let material = self.material(2.4e9, 0.42, 1180.0, 267.0);
-        let mut body = QuadBody::new(mesh.without(slot), material, Split::Rankine, |_| 1.0);
+        let of_mesh = self.relative_toughness();
+        let is_fine = |[x, y]: [f64; 2]| (74e-3..104e-3).contains(&x) && (33.6e-3..36e-3).contains(&y);
+        let toughness = |place| if is_fine(place) { of_mesh } else { 1.0 };
+        let mut body = QuadBody::new(mesh.without(slot), material, Split::Rankine, toughness);
         for (n, [x, y]) in body.mesh.nodes.clone().into_iter().enumerate() {
             let side = (x == 0.0 || (x - 140e-3).abs() < 1e-9) && (y - 35e-3).abs() < 20e-3 + 1e-9;
             body.held[n][0] = side;

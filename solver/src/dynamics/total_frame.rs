@@ -49,6 +49,11 @@ use forced::LatticeForcing;
 use prescribed::Reactions;
 use probe::ProbePlace;
 
+/// From the velocity at hand to that of the step to come, of a step: prescribed velocities are those in the
+/// middle of steps.
+const AT_WHOLE_STEP: f64 = 0.5;
+const BETWEEN_STEPS: f64 = 1.0;
+
 /// One body in the total frame.
 #[derive(Debug, Clone)]
 pub struct TotalFrame {
@@ -109,7 +114,7 @@ impl TotalFrame {
     /// Forces and accelerations at t = 0.
     fn begin(&mut self) {
         self.begin_forces();
-        self.accelerate();
+        self.accelerate(AT_WHOLE_STEP);
     }
 
     /// Forces at t = 0.
@@ -159,7 +164,7 @@ impl TotalFrame {
 
     /// The other part: accelerations and velocities at its end.
     fn find_motion(&mut self, dt: f64) {
-        self.accelerate();
+        self.accelerate(BETWEEN_STEPS);
         self.find_velocities(dt);
     }
 
@@ -225,28 +230,28 @@ impl TotalFrame {
         lattice.fold(internal);
     }
 
-    /// `a = M⁻¹ (f_ext − f_int)`, or what is prescribed.
-    fn accelerate(&mut self) {
+    /// `a = M⁻¹ (f_ext − f_int)`, or what is prescribed, from the velocity at hand so much of a step before.
+    fn accelerate(&mut self, part: f64) {
         self.external_minus_internal();
-        self.divide_by_mass();
+        self.divide_by_mass(part);
     }
 
     /// `a = M⁻¹ f`, or what is prescribed, of the forces in the room of the acceleration.
-    fn divide_by_mass(&mut self) {
+    fn divide_by_mass(&mut self, part: f64) {
         self.reactions.begin(&self.constraints, &self.acceleration);
         self.mass.divide_in_use(&self.in_use, self.grid, &mut self.acceleration);
         let Self { reactions, constraints, edges, mass, velocity, acceleration, .. } = self;
         let step = [self.time, self.time_step];
-        reactions.prescribe(constraints, step, mass, velocity, acceleration);
+        reactions.prescribe(constraints, step, part, mass, velocity, acceleration);
         if let Some(edges) = edges {
-            edges.enforce(step, velocity, acceleration, reactions);
+            edges.enforce(step, part, velocity, acceleration, reactions);
         }
     }
 
     /// Makes ready for steps of `dt` seconds: the accelerations at t = 0 of what is prescribed.
     pub(crate) fn prepare(&mut self, dt: f64) {
         self.expect_steps(dt);
-        self.accelerate();
+        self.accelerate(AT_WHOLE_STEP);
     }
 
     /// Takes the length of the steps to come, s.

@@ -8,13 +8,14 @@ use crate::linear_algebra::extremes::{larger, smaller};
 use crate::linear_algebra::lane::{LANES, Lane};
 use crate::material::degradation::{BROKEN, FractureModel};
 use crate::material::elasticity::ElasticModuli;
-use crate::material::mesh_toughness::{kappa, rule};
+use crate::material::mesh_toughness::slope_in;
 use crate::material::random_field::RandomField;
 use crate::particles::lattice::Lattice;
 use crate::phase_field::PhaseField;
 use crate::phase_field::lag::LagWork;
-use crate::scene::{Body, Crack, CrackKind, Fracture, Kinematics, SolverSettings};
+use crate::scene::{Body, Crack, CrackKind, CrackModel, Fracture, Kinematics, SolverSettings};
 use crate::splines::patch::Patch;
+use crate::splines::spline::ROUND_OFF;
 use crate::transfer::elastic_forces::elastic_sweep;
 use crate::transfer::finite::sweep_with;
 use crate::transfer::kernels::{DegradedStress, HistoryUpdate, ScreenedStress, SurfaceEnergy};
@@ -373,19 +374,22 @@ fn functions_on_seeds(patch: &Patch, body: &Body) -> Vec<usize> {
 }
 
 /// Gc over its mean at the points, 1 where there is none, if it varies or is over the cost of a crack on the
-/// mesh, kappa with the shorter side of the span.
+/// mesh, kappa with the shorter side of the span. AT1 keeps its Gc, and with it its strength, where spans are
+/// longer than its crack is wide to one side: they resolve none.
 fn relative_toughness(patch: &Patch, lattice: &Lattice, body: &Body, fracture: &Fracture) -> Option<Vec<Lane>> {
     let field = fracture.random.map(RandomField::new);
     if field.is_none() && !fracture.mesh_toughness {
         return None;
     }
-    let rule = rule(fracture, lattice.degree, body).filter(|_| fracture.mesh_toughness);
-    let side = |place, direction| patch.span_across(place, direction).unwrap_or(0.0);
-    let shorter = |place| smaller(side(place, [1.0, 0.0]), side(place, [0.0, 1.0]));
+    let slope = slope_in(fracture, lattice.degree, body).filter(|_| fracture.mesh_toughness);
+    let l0 = fracture.length_scale;
+    let longest = if fracture.model == CrackModel::At1 { 2.0 * l0 * (1.0 + ROUND_OFF) } else { f64::INFINITY };
     let mut relative = vec![Lane::splat(1.0); lattice.batches()];
     lattice.for_each_point(|batch, lane, place, _| {
         let random = field.as_ref().map_or(1.0, |field| field.at(place));
-        let cost = rule.and_then(|[degree, points]| kappa(degree, points, shorter(place) / fracture.length_scale));
+        let sides = [[1.0, 0.0], [0.0, 1.0]].map(|along| patch.span_across(place, along).unwrap_or(0.0));
+        let resolves = larger(sides[0], sides[1]) <= longest;
+        let cost = slope.filter(|_| resolves).map(|a| 1.0 + a * smaller(sides[0], sides[1]) / l0);
         relative[batch][lane] = random / fault!("toughness-of-the-mesh-forgotten", cost => None).unwrap_or(1.0);
     });
     Some(relative)

@@ -145,17 +145,15 @@ impl Simulation {
     }
 
     /// Warns at the end of what the transfers and contact took or gave, if that is much beside the energy
-    /// that is not of the mean motion.
+    /// that is not of the motion as one rigid body.
     fn watch_losses(&mut self, sample: &Sample) {
         if !self.finished() {
             return;
         }
-        let mass: f64 = self.updated_frame().map_or(0.0, |frame| frame.fields.iter().map(|field| field.mass()).sum());
-        let [px, py] = sample.momentum;
-        let mean = if mass > 0.0 { 0.5 * (px * px + py * py) / mass } else { 0.0 };
+        let rigid = self.updated_frame().map_or(0.0, |frame| frame.rigid_energy());
         let fracture = sample.fracture.as_ref().map_or(0.0, |fracture| fracture.energy);
         let friction = sample.contact.map_or(0.0, |contact| contact.friction);
-        let beside = [sample.kinetic - mean, sample.elastic, fracture, friction, self.energy_in - mean];
+        let beside = [sample.kinetic - rigid, sample.elastic, fracture, friction, self.energy_in - rigid];
         let least = LEAST_BESIDE * larger(self.energy_in, sample.largest_term());
         let largest = beside.into_iter().fold(least, larger);
         let by_contact = sample.contact.map_or(0.0, |contact| contact.loss - friction);
@@ -177,8 +175,8 @@ impl Simulation {
             if loss.abs() > LOSS_LIMIT * largest {
                 let part = 100.0 * loss.abs() / largest;
                 self.warnings.push(format!(
-                    "{who} {does} {:.3e} J ({column}), {part:.0} % of the largest energy of the run besides that of the mean \
-                     motion: {remedy}",
+                    "{who} {does} {:.3e} J ({column}), {part:.0} % of the largest energy of the run besides that of the motion \
+                     as one rigid body: {remedy}",
                     loss.abs()
                 ));
             }

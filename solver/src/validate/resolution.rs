@@ -4,7 +4,7 @@
 use super::findings::Findings;
 use super::ground::Ground;
 use crate::linear_algebra::extremes::{around, larger};
-use crate::material::mesh_toughness::rule;
+use crate::material::mesh_toughness::slope_in;
 use crate::particles::spans::{finest_cell, longest_span};
 use crate::phase_field::fracture::half_width;
 use crate::scene::{Body, Fracture, Mesh, Shape};
@@ -23,10 +23,10 @@ pub(super) fn check(body: &Body, fracture: &Fracture, ground: &Ground<'_>, findi
         let remedy = "give at least the length of a cell: the points of one cell cannot differ by more";
         findings.error(format!("material.{}.fracture.random.correlation", body.material), message, remedy);
     }
-    if fracture.mesh_toughness && rule(fracture, ground.mesh.degree, body).is_none() {
+    if fracture.mesh_toughness && slope_in(fracture, ground.mesh.degree, body).is_none() {
         let message = "the key has no effect on body";
-        let known = "the cost of a crack is known for at2 without anisotropy, Gauss points, and degree 1 or 2 with 2 x 2 \
-                     points a cell, or 3 with 3 x 3";
+        let known = "the cost of a crack is known for at1 and at2 without anisotropy, Gauss points, and degree 1 or 2 \
+                     with 2 x 2 points a cell; with at2 also for degree 3 with 3 x 3";
         let key = format!("material.{}.fracture.mesh_toughness", body.material);
         findings.warn(key, format!("{message} {:?}: {known}", body.name));
     }

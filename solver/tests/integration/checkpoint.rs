@@ -189,6 +189,9 @@ fn with_fragments() {
     let (simulation, _) = crate::common::run(&scene);
     assert!(simulation.updated_frame().unwrap().fields.len() >= 2);
     goes_on_bit_by_bit("fragments", &scene);
+    let edge = Edge::Segment([[0.004, 0.004], [0.004, 0.006]]);
+    scene.bodies[0].conditions = vec![EdgeCondition::fixed(edge, Hold::Components([true; 2]))];
+    goes_on_bit_by_bit("fragments of a held body", &scene);
 }
 
 #[test]

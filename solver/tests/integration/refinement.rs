@@ -3,6 +3,7 @@
 use crate::common::{brittle, elastic_scene, make_cohesive, run};
 use fisura::Simulation;
 use fisura::linear_algebra::extremes::larger;
+use fisura::scene::time::Course;
 use fisura::scene::*;
 
 /// A plate of 16 by 8 mm with a seed along the middle of its left half, pulled open, whose cells are halved
@@ -96,6 +97,29 @@ fn the_ledger_closes_beside_a_held_side() {
         let (first, last) = (&samples[0], samples.last().unwrap());
         let stopped = first.kinetic - last.kinetic;
         assert!(stopped > 0.0 && last.closure.abs() < 1e-3 * stopped, "open by {:e} of {stopped:e} J", last.closure);
+    }
+}
+
+/// Cells that are halved at a side while it speeds up do not change how it moves.
+#[test]
+fn a_driven_side_moves_as_prescribed() {
+    for (model, halvings) in [(0, 1), (1, 1), (1, 2)] {
+        let mut scene = elastic_scene(2, [0.02, 0.004], [40, 8]);
+        scene.materials.get_mut("glass").unwrap().fracture = Some(brittle());
+        scene = of_model(model, scene);
+        scene.mesh.halvings = halvings;
+        let motion = Motion::Displacement([6e-6, 0.0]);
+        let time = TimeFactor { course: Course::Smooth(2e-6), until: None };
+        let sides = [Side::Left, Side::Right].map(|side| Boundary::fixed(side, [true, false]));
+        let [left, right] = sides;
+        scene.boundaries = vec![left, Boundary { prescribed: Prescribed { motion, time }, ..right }];
+        scene.output.probes = vec![Probe { name: "side".to_string(), at: [0.02, 0.002] }];
+        scene.analysis.end_time = 3e-6;
+        let (_, samples) = run(&scene);
+        let last = samples.last().unwrap();
+        assert_ne!(last.refinement, Some(0.0), "cells were halved");
+        let (_, moved) = last.named_values().into_iter().find(|(name, _)| name == "side_ux_m").unwrap();
+        approx::assert_relative_eq!(moved, 6e-6, max_relative = 1e-12);
     }
 }
 

@@ -20,7 +20,8 @@ use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::time::Duration;
 
-use fisura::material::mesh_toughness::kappa;
+use fisura::material::mesh_toughness::slope;
+use fisura::scene::CrackModel;
 
 use super::peer::program::Program;
 use super::plate_error::References;
@@ -98,7 +99,7 @@ impl Run {
     }
 
     fn words(&self, program: &Path) -> Vec<String> {
-        let kappa = if self.corrected { kappa(1, 2, self.h).unwrap_or(1.0) } else { 1.0 };
+        let kappa = 1.0 + if self.corrected { self.h * slope(CrackModel::At2, 1, 2).unwrap_or(0.0) } else { 0.0 };
         let mut words = vec![program.display().to_string()];
         words.extend(FAST.map(String::from));
         words.extend(["--h-mm".into(), format!("{:.9}", self.h * LENGTH_SCALE_MM)]);

@@ -14,7 +14,7 @@ use fisura::Simulation;
 use fisura::scene::PhaseFieldInterval;
 
 use super::plate_error::{References, TIGHT_TOLERANCE, difference_of_energies};
-use super::plate_scene::{graded, half, with_toughness_of_mesh};
+use super::plate_scene::{graded, half, refined, with_toughness_of_mesh};
 use super::plate_share::share;
 use super::record::{AnswerError, BenchRecord};
 use super::timing::{Contestant, pool, round_robin, whole_run};
@@ -38,29 +38,38 @@ const QUICK: usize = 5;
 /// Finest graded mesh for p = 3.
 const FINEST_CUBIC: f64 = 0.5;
 
-/// A way to run the plate on graded meshes: with the loose tolerance or that of the suite, with Gc or
-/// Gc/kappa, and with a solve of the phase field in every step, or in every second or third one.
+/// A way to run the plate with short spans only where a crack runs: on graded meshes or refined so many times
+/// along the crack, with the loose tolerance or that of the suite, with Gc or Gc/kappa, and with a solve of
+/// the phase field in every step, or in every second or third one.
 #[derive(Debug, Clone, Copy)]
 struct Way {
     degree: usize,
+    refined: usize,
     loose: bool,
     corrected: bool,
     interval: usize,
 }
 
-const WAYS: [Way; 7] = [
-    Way { degree: 2, loose: true, corrected: false, interval: 2 },
-    Way { degree: 2, loose: true, corrected: true, interval: 1 },
-    Way { degree: 2, loose: true, corrected: true, interval: 2 },
-    Way { degree: 2, loose: true, corrected: true, interval: 3 },
-    Way { degree: 2, loose: false, corrected: true, interval: 2 },
-    Way { degree: 3, loose: true, corrected: true, interval: 2 },
-    Way { degree: 3, loose: false, corrected: true, interval: 2 },
+const WAYS: [Way; 11] = [
+    Way { degree: 2, refined: 0, loose: true, corrected: false, interval: 2 },
+    Way { degree: 2, refined: 0, loose: true, corrected: true, interval: 1 },
+    Way { degree: 2, refined: 0, loose: true, corrected: true, interval: 2 },
+    Way { degree: 2, refined: 0, loose: true, corrected: true, interval: 3 },
+    Way { degree: 2, refined: 0, loose: false, corrected: true, interval: 2 },
+    Way { degree: 3, refined: 0, loose: true, corrected: true, interval: 2 },
+    Way { degree: 3, refined: 0, loose: false, corrected: true, interval: 2 },
+    Way { degree: 2, refined: 1, loose: true, corrected: true, interval: 1 },
+    Way { degree: 2, refined: 1, loose: true, corrected: true, interval: 2 },
+    Way { degree: 2, refined: 2, loose: true, corrected: true, interval: 1 },
+    Way { degree: 2, refined: 2, loose: true, corrected: true, interval: 2 },
 ];
 
 impl Way {
     fn scene(self, settings: &Settings, h: f64) -> Result<CaseScene, BenchError> {
-        let mut case = graded(settings, self.degree, h)?;
+        let mut case = match self.refined {
+            0 => graded(settings, self.degree, h)?,
+            halvings => refined(settings, self.degree, h, halvings)?,
+        };
         case.scene.solver.phase_field_interval = PhaseFieldInterval::Steps(self.interval);
         if self.loose {
             case.scene.solver.phase_field_tolerance = LOOSE_TOLERANCE;
@@ -74,10 +83,15 @@ impl Way {
     /// Id and label of its run of a scene.
     fn names(self, case: &CaseScene, h: f64) -> (String, String) {
         let [name, toughness] = if self.corrected { ["kappa", "Gc/κ"] } else { ["gc", "Gc"] };
-        let Self { degree, interval, .. } = self;
+        let Self { degree, interval, refined, .. } = self;
+        let [mark, mesh] = if refined > 0 {
+            [format!("-r{refined}"), format!("refined {refined}×")]
+        } else {
+            ["", "graded"].map(String::from)
+        };
         let tolerance = case.scene.solver.phase_field_tolerance;
-        let id = format!("plate/graded/p{degree}-{name}-{tolerance:e}-m{interval}/h{h}");
-        (id, format!("fisura, p = {degree}, graded, {toughness}, {tolerance:e}, m = {interval}"))
+        let id = format!("plate/graded/p{degree}-{name}-{tolerance:e}-m{interval}{mark}/h{h}");
+        (id, format!("fisura, p = {degree}, {mesh}, {toughness}, {tolerance:e}, m = {interval}"))
     }
 
     fn meshes(self, quick: bool) -> impl Iterator<Item = f64> {

@@ -1,7 +1,7 @@
 //! The half plate of the cases on meshes of any span.
 
-use fisura::material::mesh_toughness::kappa;
-use fisura::scene::{CrackKind, Side};
+use fisura::material::mesh_toughness::slope;
+use fisura::scene::{CrackKind, CrackModel, Side};
 
 use super::{BenchError, Settings};
 use crate::case::expand::CaseScene;
@@ -57,19 +57,36 @@ pub fn graded(settings: &Settings, degree: usize, h: f64) -> Result<CaseScene, B
         &[(low[1], SHORT_SPANS[1], span), (SHORT_SPANS[1], high[1], 2.0 * span)],
     ];
     case.scene.mesh.knots = parts.map(|parts| open_knots(degree, parts));
-    case.scene.mesh.lengthen_end(Side::Right);
-    (case.scene.analysis.safety, case.scene.output.samples) = (SAFETY, SAMPLES);
+    in_a_hurry(&mut case);
     Ok(case)
 }
 
-/// Gives the scene Gc over what a crack costs on its mesh ([`kappa`]).
+/// The same with equal spans that are halved so many times along the crack, to `h` length scales.
+///
+/// # Errors
+/// As [`half`].
+pub fn refined(settings: &Settings, degree: usize, h: f64, halvings: usize) -> Result<CaseScene, BenchError> {
+    let mut case = half(settings, degree, h)?;
+    let coarse = half(settings, degree, h * 2f64.powi(halvings as i32))?;
+    case.scene.mesh = coarse.scene.mesh;
+    case.scene.mesh.halvings = halvings;
+    in_a_hurry(&mut case);
+    Ok(case)
+}
+
+fn in_a_hurry(case: &mut CaseScene) {
+    case.scene.mesh.lengthen_end(Side::Right);
+    (case.scene.analysis.safety, case.scene.output.samples) = (SAFETY, SAMPLES);
+}
+
+/// Gives the scene Gc over what a crack costs on its mesh ([`slope`]).
 ///
 /// # Errors
 /// If that is not known of the degree and the points of the scene.
 pub fn with_toughness_of_mesh(case: &mut CaseScene) -> Result<(), BenchError> {
     let (degree, points) = (case.scene.mesh.degree[0], case.scene.bodies[0].particles_per_cell[0]);
     let unknown = || format!("the surface energy of a crack with p = {degree} and {points} points is unknown");
-    kappa(degree, points, 0.0).ok_or_else(|| BenchError::input(unknown()))?;
+    slope(CrackModel::At2, degree, points).ok_or_else(|| BenchError::input(unknown()))?;
     let fractures = case.scene.materials.values_mut().filter_map(|material| material.fracture.as_mut());
     fractures.for_each(|fracture| fracture.mesh_toughness = true);
     Ok(())

@@ -8,7 +8,7 @@
 
 use std::collections::BTreeMap;
 
-use fisura::material::mesh_toughness::rule;
+use fisura::material::mesh_toughness::slope_in;
 use fisura::scene::{Body, CrackModel, Frame, Material, PhaseFieldInterval, SolverSettings};
 
 use super::document::Node;
@@ -47,7 +47,8 @@ pub(super) fn choose_span(
     for (name, material) in materials {
         let Some(fracture) = &mut material.fracture else { continue };
         let says = |node: &Node| node.get(name)?.get("fracture")?.get("mesh_toughness").map(|_| ());
-        let is_known = frame == Frame::Total && bodies.iter().all(|body| rule(fracture, degree, body).is_some());
+        let is_fitted = frame == Frame::Total && fracture.model == CrackModel::At2;
+        let is_known = is_fitted && bodies.iter().all(|body| slope_in(fracture, degree, body).is_some());
         if scene.get("material").and_then(says).is_none() {
             fracture.mesh_toughness = is_known;
         }

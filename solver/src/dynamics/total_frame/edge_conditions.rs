@@ -114,10 +114,11 @@ impl EdgeConditions {
     }
 
     /// Makes the accelerations (m/s²) at `time` those of a step of `dt` seconds in which the edges move as
-    /// prescribed. The reactions go on to this whole step.
+    /// prescribed, from the velocity a `part` of a step before. The reactions go on to this whole step.
     pub(super) fn enforce(
         &mut self,
         [time, dt]: [f64; 2],
+        part: f64,
         velocity: &VectorField,
         acceleration: &mut VectorField,
         sides: &mut Reactions,
@@ -126,7 +127,6 @@ impl EdgeConditions {
             reaction.begin();
             reaction.drive(condition.prescribed.mean_velocity(time, dt));
         }
-        let part = if time == 0.0 { 0.5 } else { 1.0 }; // of a step, since the velocity at hand
         let excess = |moment: &Moment| {
             let next = moment.translated(self.reactions[moment.condition].velocity[0]);
             let now = fault!("edge-speed-forgotten", moment.of(velocity) => next);

@@ -3,9 +3,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::TotalFrame;
+use crate::linear_algebra::lane::Lane;
 use crate::material::degradation::{stress_at, stress_out_of_plane};
+use crate::material::split::driving_energy;
 use crate::output::inspection::{PointFracture, PointState};
 use crate::output::span_grid::{Corner, SpanGrid};
+use crate::phase_field::fracture::LatticeFracture;
 
 impl TotalFrame {
     /// Calls `f` with the state of every point.
@@ -23,8 +26,12 @@ impl TotalFrame {
             let degraded = fracture.map(|f| (&f.model, f.phase[batch][lane]));
             let stress = stress_at(&self.moduli, strain, degraded);
             let stress_out_of_plane = stress_out_of_plane(&self.moduli, strain, degraded);
-            let fracture =
-                fracture.map(|f| PointFracture { history: f.history[batch][lane], phase: f.phase[batch][lane] });
+            let drive = |f: &LatticeFracture| {
+                // with a threshold it is the present one, which is stored where it is near the threshold alone
+                let present = || driving_energy(&self.moduli, f.model.split, strain.map(Lane::splat))[0];
+                if f.has_threshold() { present() } else { f.history[batch][lane] }
+            };
+            let fracture = fracture.map(|f| PointFracture { history: drive(f), phase: f.phase[batch][lane] });
             f(PointState {
                 body: 0,
                 point,

@@ -20,7 +20,7 @@
 mod copies;
 mod regions;
 
-use super::TotalFrame;
+use super::{AT_WHOLE_STEP, BETWEEN_STEPS, TotalFrame};
 use crate::checkpoint::{Archive, StateError};
 use crate::dynamics::constraints::Constraints;
 use crate::dynamics::energy::Sample;
@@ -40,7 +40,8 @@ use crate::transfer::sweep::StripForces;
 use copies::{copy_fields, copy_points};
 use regions::{Functions, ROWS, Regions};
 
-/// Steps from one look at the phase field to the next: a crack is a third of a span further at most.
+/// Steps from one look at the phase field to the next: a crack is a third of a span further at most. Where the
+/// energy nears a threshold is seen in every step, since a wave is faster.
 const LOOK: usize = 8;
 /// Where every level has points, and how the levels hang together.
 #[derive(Debug)]
@@ -129,6 +130,7 @@ impl Levels {
         let others: Vec<&Crack> = scene.bodies[0].cracks.iter().filter(|crack| !seeded(crack)).collect();
         levels.regions.mark_along(&others, &frames);
         levels.regions.mark_cracks(&frames);
+        levels.regions.mark_driven(&frames);
         levels.functions = levels.regions.functions(&frames);
         levels.take_regions(&mut frames);
         levels.on_fields(&mut frames, |frame| &mut frame.displacement, spread_all);
@@ -137,7 +139,7 @@ impl Levels {
         for frame in &mut frames {
             frame.begin_forces();
         }
-        levels.accelerate(&mut frames);
+        levels.accelerate(&mut frames, AT_WHOLE_STEP);
         Ok((frames, levels))
     }
 
@@ -146,13 +148,11 @@ impl Levels {
     /// # Errors
     /// If the phase field cannot be solved for.
     fn follow(&mut self, frames: &mut [TotalFrame]) -> Result<(), SolveFailure> {
-        self.since += 1;
-        if self.since < LOOK {
-            return Ok(());
-        }
-        self.since = 0;
+        self.since = (self.since + 1) % LOOK;
         let before = self.regions.clone();
-        if !self.regions.mark_cracks(frames) {
+        let of_cracks = self.since == 0 && self.regions.mark_cracks(frames);
+        let is_driven = fault!("driven-spans-seen-late", true => self.since == 0) && self.regions.mark_driven(frames);
+        if !of_cracks && !is_driven {
             return Ok(());
         }
         let stored = |frames: &[TotalFrame]| frames.iter().map(TotalFrame::stored_energies).collect::<Vec<_>>();
@@ -171,7 +171,7 @@ impl Levels {
         for (frame, energies) in frames.iter_mut().zip(&energies) {
             frame.refresh(energies[1]);
         }
-        self.accelerate(frames);
+        self.accelerate(frames, AT_WHOLE_STEP);
         let sum = |energies: &[[f64; 2]]| energies.iter().flatten().sum::<f64>();
         self.added += sum(&stored(frames)) - sum(&energies);
         Ok(())
@@ -191,7 +191,7 @@ impl Levels {
         frames.iter_mut().for_each(|frame| frame.find_strains(dt));
         self.advance_phase_fields(frames)?;
         frames.iter_mut().for_each(TotalFrame::internal_forces);
-        self.accelerate(frames);
+        self.accelerate(frames, BETWEEN_STEPS);
         frames.iter_mut().for_each(|frame| frame.find_velocities(dt));
         Ok(())
     }
@@ -199,7 +199,7 @@ impl Levels {
     /// Makes ready for steps of `dt` seconds.
     pub(super) fn prepare(&self, frames: &mut [TotalFrame], dt: f64) {
         frames.iter_mut().for_each(|frame| frame.expect_steps(dt));
-        self.accelerate(frames);
+        self.accelerate(frames, AT_WHOLE_STEP);
     }
 
     /// The sample of the body, from those of its levels.
@@ -244,11 +244,11 @@ impl Levels {
         Ok(())
     }
 
-    /// Accelerations of all levels at the present forces.
-    fn accelerate(&self, frames: &mut [TotalFrame]) {
+    /// Accelerations of all levels at the present forces; the velocity at hand is so much of a step before.
+    fn accelerate(&self, frames: &mut [TotalFrame], part: f64) {
         frames.iter_mut().for_each(TotalFrame::external_minus_internal);
         self.on_fields(frames, |frame| &mut frame.acceleration, fold_all);
-        frames.iter_mut().for_each(TotalFrame::divide_by_mass);
+        frames.iter_mut().for_each(|frame| frame.divide_by_mass(part));
         self.on_fields(frames, |frame| &mut frame.acceleration, spread_all);
     }
 

@@ -39,12 +39,13 @@ impl Reactions {
         }
     }
 
-    /// Sets the accelerations (m/s²) of the prescribed components at `time` for a step of `dt` seconds, and
-    /// adds the inertia to their reactions.
+    /// Sets the accelerations (m/s²) of the prescribed components at `time` for a step of `dt` seconds, from
+    /// the velocity a `part` of a step before, and adds the inertia to their reactions.
     pub(super) fn prescribe(
         &mut self,
         constraints: &Constraints,
         [time, dt]: [f64; 2],
+        part: f64,
         mass: &MassMatrix,
         velocity: &VectorField,
         acceleration: &mut VectorField,
@@ -56,7 +57,6 @@ impl Reactions {
             let next = condition.prescribed.mean_velocity(time, dt);
             reaction.drive(fault!("driven-side-lags", next => next.map(|v| 0.5 * v)));
         }
-        let part = if time == 0.0 { 0.5 } else { 1.0 }; // of a step, since the velocity at hand
         for (at, component, number) in constraints.iter() {
             let change = self.0[number].velocity[0][component] - velocity[component][at];
             acceleration[component][at] = if dt > 0.0 { change / (part * dt) } else { 0.0 };

@@ -6,8 +6,14 @@ use super::field::DiscreteField;
 use crate::dynamics::body_sample::{BodySample, BodySamples, PairForce, pairs};
 use crate::dynamics::energy::Sample;
 use crate::linear_algebra::extremes::smaller;
+use crate::linear_algebra::vectors::dot;
 
 impl UpdatedFrame {
+    /// Kinetic energy of the motion of all bodies as one rigid body, J.
+    pub(crate) fn rigid_energy(&self) -> f64 {
+        RigidMotion::of(&self.fields.iter().collect::<Vec<_>>()).energy
+    }
+
     /// The bodies of these names; `samples` are those of the fields, a metre thick, and `dt` is the step in
     /// use.
     pub(super) fn sample_bodies(&self, names: &[String], samples: &[Sample], dt: f64) -> BodySamples {
@@ -41,26 +47,43 @@ impl UpdatedFrame {
     }
 }
 
-/// A body as the fields of its fragments and their samples have it, those of bodies a metre thick; its spin
-/// is that of the points about the centre of mass, `Σ m r × v/Σ m r²`, with their velocities half a step
-/// back.
+/// Motion of fields as one rigid body: centre of mass (m), spin of the points about it, `Σ m r × v/Σ m r²`
+/// with their velocities half a step back (rad/s), and energy (J).
+struct RigidMotion {
+    center: [f64; 2],
+    spin: f64,
+    energy: f64,
+}
+
+impl RigidMotion {
+    fn of(fields: &[&DiscreteField]) -> Self {
+        let mass: f64 = fields.iter().map(|field| field.mass()).sum();
+        let points = || fields.iter().flat_map(|field| &field.points);
+        let center = center_of_mass(points());
+        let mean = [0, 1].map(|d| fields.iter().map(|field| field.momentum()[d]).sum::<f64>() / mass);
+        let parts = fields.iter().flat_map(|field| field.points.iter().map(|point| (field.density, point)));
+        let [moment, inertia] = parts.fold([0.0; 2], |[moment, inertia], (density, point)| {
+            let [x, y] = [0, 1].map(|d| point.position[d] - center[d]);
+            let [u, v] = [0, 1].map(|d| point.velocity[d] - mean[d]);
+            let mass = density * point.volume;
+            [moment + mass * (x * v - y * u), inertia + mass * (x * x + y * y)]
+        });
+        let thickness = fields[0].thickness;
+        let energy = 0.5 * (mass * dot(mean, mean) + thickness * moment * moment / inertia);
+        Self { center, spin: moment / inertia, energy }
+    }
+}
+
+/// A body as the fields of its fragments and their samples have it, those of bodies a metre thick.
 fn sample_body(name: &str, fields: &[&DiscreteField], samples: &[&Sample], thickness: f64) -> BodySample {
     let mass: f64 = fields.iter().map(|field| field.mass()).sum();
-    let points = || fields.iter().flat_map(|field| &field.points);
-    let center = center_of_mass(points());
-    let mean = [0, 1].map(|d| fields.iter().map(|field| field.momentum()[d]).sum::<f64>() / mass);
-    let parts = points().map(|point| {
-        let [x, y] = [0, 1].map(|d| point.position[d] - center[d]);
-        let [u, v] = [0, 1].map(|d| point.velocity[d] - mean[d]);
-        [point.volume * (x * v - y * u), point.volume * (x * x + y * y)]
-    });
-    let [moment, inertia] = parts.fold([0.0; 2], |[a, b], [x, y]| [a + x, b + y]);
+    let RigidMotion { center, spin, .. } = RigidMotion::of(fields);
     BodySample {
         name: name.to_string(),
         mass,
         center,
         velocity: [0, 1].map(|d| samples.iter().map(|sample| sample.momentum[d]).sum::<f64>() * thickness / mass),
-        spin: moment / inertia,
+        spin,
         kinetic: samples.iter().map(|sample| sample.kinetic).sum::<f64>() * thickness,
     }
 }

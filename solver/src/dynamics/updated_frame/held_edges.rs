@@ -202,6 +202,12 @@ impl HeldEdges {
         archive.value(&mut self.step)?;
         for edge in &mut self.edges {
             archive.value(&mut edge.reaction)?;
+            let mut kept: Vec<[f64; 2]> = edge.points.iter().map(|(_, point)| point.position).collect();
+            archive.value(&mut kept)?;
+            edge.points.retain(|(_, point)| kept.contains(&point.position)); // a fragment has a part of them
+            if edge.points.len() != kept.len() {
+                return Err(StateError::of_another_scene("a condition holds other places"));
+            }
             edge.points.iter_mut().try_for_each(|(place, _)| archive.value(&mut place.position))?;
         }
         Ok(())

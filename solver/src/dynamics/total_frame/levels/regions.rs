@@ -102,7 +102,6 @@ impl Regions {
         let mut any = false;
         for level in 0..self.columns.len() {
             let spans = frames[level].patch.spaces.each_ref().map(|space| space.spans().len());
-            any |= self.mark_driven(level, &frames[level], spans);
             for (frame, halvings) in frames[level..].iter().zip(0..) {
                 let Some(fracture) = &frame.fracture else { continue };
                 let (grid, degree) = (frame.lattice.patch_grid, frame.lattice.degree);
@@ -123,16 +122,22 @@ impl Regions {
         any
     }
 
-    /// Refines the tiles where the energy nears the threshold of a model that has one, and a span beside.
-    fn mark_driven(&mut self, level: usize, frame: &TotalFrame, spans: [usize; 2]) -> bool {
-        let lattice = &frame.lattice;
-        let cells =
-            frame.fracture.iter().filter_map(|f| Some(f.field.awake()?.near_the_threshold(&frame.lattice, &f.history)));
-        let tiles = lattice.tiles.len();
-        let places = cells.flatten().map(|cell| [cell % tiles * LANES, cell / tiles]);
-        let around = |place: usize, size: usize, d: usize| place.saturating_sub(1)..(place + size + 1).min(spans[d]);
-        let ranges: Vec<_> = places.map(|[i, j]| [around(i, LANES, 0), around(j, 1, 1)]).collect();
-        ranges.into_iter().fold(false, |any, ranges| self.mark(level, ranges) | any)
+    /// Refines the tiles where the energy nears the threshold of a model that has one, and a span beside;
+    /// whether there are new ones.
+    pub(super) fn mark_driven(&mut self, frames: &[TotalFrame]) -> bool {
+        let mut any = false;
+        for (level, TotalFrame { lattice, fracture, patch, .. }) in frames[..self.columns.len()].iter().enumerate() {
+            let Some((awake, history)) = fracture.as_ref().and_then(|f| Some((f.field.awake()?, &f.history))) else {
+                continue;
+            };
+            let spans = patch.spaces.each_ref().map(|space| space.spans().len());
+            let around = |at: usize, size: usize, d: usize| at.saturating_sub(1)..(at + size + 1).min(spans[d]);
+            let tiles = lattice.tiles.len();
+            for cell in awake.near_the_threshold(lattice, history) {
+                any |= self.mark(level, [around(cell % tiles * LANES, LANES, 0), around(cell / tiles, 1, 1)]);
+            }
+        }
+        any
     }
 
     /// Refines the tiles of some spans of a level, and those of coarser levels that they lie in; whether
