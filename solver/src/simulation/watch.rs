@@ -150,7 +150,7 @@ impl Simulation {
         if !self.finished() {
             return;
         }
-        let rigid = self.updated_frame().map_or(0.0, |frame| frame.rigid_energy());
+        let rigid = self.updated_frame().map_or(0.0, |frame| frame.rigid_energy(sample));
         let fracture = sample.fracture.as_ref().map_or(0.0, |fracture| fracture.energy);
         let friction = sample.contact.map_or(0.0, |contact| contact.friction);
         let beside = [sample.kinetic - rigid, sample.elastic, fracture, friction, self.energy_in - rigid];

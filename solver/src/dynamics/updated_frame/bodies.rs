@@ -6,12 +6,15 @@ use super::field::DiscreteField;
 use crate::dynamics::body_sample::{BodySample, BodySamples, PairForce, pairs};
 use crate::dynamics::energy::Sample;
 use crate::linear_algebra::extremes::smaller;
-use crate::linear_algebra::vectors::dot;
 
 impl UpdatedFrame {
-    /// Kinetic energy of the motion of all bodies as one rigid body, J.
-    pub(crate) fn rigid_energy(&self) -> f64 {
-        RigidMotion::of(&self.fields.iter().collect::<Vec<_>>()).energy
+    /// Kinetic energy (J) of the motion of all bodies as one rigid body with the momentum (kg m/s) and the
+    /// angular momentum about the origin (kg m²/s) of a sample.
+    pub(crate) fn rigid_energy(&self, sample: &Sample) -> f64 {
+        let ([x, y], mean, spin) = rigid_motion(&self.fields.iter().collect::<Vec<_>>());
+        let [px, py] = sample.momentum;
+        let about_center = sample.angular_momentum - (x * py - y * px);
+        0.5 * (mean[0] * px + mean[1] * py + spin * about_center)
     }
 
     /// The bodies of these names; `samples` are those of the fields, a metre thick, and `dt` is the step in
@@ -47,37 +50,25 @@ impl UpdatedFrame {
     }
 }
 
-/// Motion of fields as one rigid body: centre of mass (m), spin of the points about it, `Σ m r × v/Σ m r²`
-/// with their velocities half a step back (rad/s), and energy (J).
-struct RigidMotion {
-    center: [f64; 2],
-    spin: f64,
-    energy: f64,
-}
-
-impl RigidMotion {
-    fn of(fields: &[&DiscreteField]) -> Self {
-        let mass: f64 = fields.iter().map(|field| field.mass()).sum();
-        let points = || fields.iter().flat_map(|field| &field.points);
-        let center = center_of_mass(points());
-        let mean = [0, 1].map(|d| fields.iter().map(|field| field.momentum()[d]).sum::<f64>() / mass);
-        let parts = fields.iter().flat_map(|field| field.points.iter().map(|point| (field.density, point)));
-        let [moment, inertia] = parts.fold([0.0; 2], |[moment, inertia], (density, point)| {
-            let [x, y] = [0, 1].map(|d| point.position[d] - center[d]);
-            let [u, v] = [0, 1].map(|d| point.velocity[d] - mean[d]);
-            let mass = density * point.volume;
-            [moment + mass * (x * v - y * u), inertia + mass * (x * x + y * y)]
-        });
-        let thickness = fields[0].thickness;
-        let energy = 0.5 * (mass * dot(mean, mean) + thickness * moment * moment / inertia);
-        Self { center, spin: moment / inertia, energy }
-    }
+/// Motion of fields as one rigid body: centre of mass (m), its velocity (m/s), and the spin of the points
+/// about it, `Σ m r × v/Σ m r²` with their velocities half a step back, rad/s.
+fn rigid_motion(fields: &[&DiscreteField]) -> ([f64; 2], [f64; 2], f64) {
+    let center = center_of_mass(fields.iter().flat_map(|field| &field.points));
+    let mass: f64 = fields.iter().map(|field| field.mass()).sum();
+    let mean = [0, 1].map(|d| fields.iter().map(|field| field.momentum()[d]).sum::<f64>() / mass);
+    let points = fields.iter().flat_map(|field| field.points.iter().map(|point| (field.density * point.volume, point)));
+    let [moment, inertia] = points.fold([0.0; 2], |[moment, inertia], (mass, point)| {
+        let [x, y] = [0, 1].map(|d| point.position[d] - center[d]);
+        let [u, v] = [0, 1].map(|d| point.velocity[d] - mean[d]);
+        [moment + mass * (x * v - y * u), inertia + mass * (x * x + y * y)]
+    });
+    (center, mean, moment / inertia)
 }
 
 /// A body as the fields of its fragments and their samples have it, those of bodies a metre thick.
 fn sample_body(name: &str, fields: &[&DiscreteField], samples: &[&Sample], thickness: f64) -> BodySample {
     let mass: f64 = fields.iter().map(|field| field.mass()).sum();
-    let RigidMotion { center, spin, .. } = RigidMotion::of(fields);
+    let (center, _, spin) = rigid_motion(fields);
     BodySample {
         name: name.to_string(),
         mass,
