@@ -5,9 +5,9 @@
 //! `reference-data/derivations/crack_cost.py` computes (Borden's convention for l0; h/l0 from 1/4 to 1). With
 //! AT1 control values lie between 0 and 1, and a row costs more the harder it is driven. There p = 1 has the
 //! `3 h/(8 b)` of an element with c = 0 (Bourdin et al. 2008; b = 2 l0), and p = 2 what makes the speed of a
-//! crack in a strip and the times of the test of Kalthoff and Winkler independent of the mesh: both lie between
-//! the costs of a row with 1e3 times the energy of the threshold, and without a limit. A run with Gc/kappa
-//! pays Gc, and its error is no longer of first order in h.
+//! crack in a strip and the times of the test of Kalthoff and Winkler independent of the mesh: both lie
+//! between the costs of a row with 1e3 times the energy of the threshold, and without a limit. A run with
+//! Gc/kappa pays Gc, and its error is no longer of first order in h.
 
 use crate::scene::{Body, CrackModel, Fracture, Layout};
 

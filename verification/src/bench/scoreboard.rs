@@ -2,9 +2,9 @@
 //! ([`elements`]) in the same rounds, on one thread. Both have a uniform mesh where the crack runs, nearly
 //! their own critical step, and solve for the phase field in every step. This solver has long spans at the
 //! free sides, and runs once more with spans that are halved along the crack. The references are
-//! extrapolated from runs of the same elements, two of which are repeated here: this favours them. The plate,
-//! whose elements are graded, has a family of its own ([`super::plate`]). Strip, ring and arrest are not here:
-//! their elements take any quadrilaterals and are not made for speed.
+//! extrapolated from runs of the same elements, two of which are repeated here: this favours them. The
+//! plate, whose elements are graded, has a family of its own ([`super::plate`]). Strip, ring and arrest are
+//! not here: their elements take any quadrilaterals and are not made for speed.
 //!
 //! The error of a run is the root mean square of the relative errors of the numbers that the case compares
 //! with the reference, measured in the same way for both programs. Numbers whose reference is uncertain by

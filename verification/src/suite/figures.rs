@@ -3,6 +3,10 @@
 //! Reference curves are looked up by quantity at the time of drawing, so a curve added to the reference data
 //! appears without a change of code.
 
+use std::sync::LazyLock;
+
+use serde::Deserialize;
+
 use crate::measure::fitted_speed;
 use crate::output::history::Table;
 use crate::record::{Axis, Curve, Figure, FigureBody, Region};
@@ -10,77 +14,37 @@ use crate::reference::{Library, ReferenceCurve};
 use crate::study::scene::RunInfo;
 
 /// A chart of one quantity against time, over all runs of a suite.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct Quantity {
-    id: &'static str,
-    title: &'static str,
-    label: &'static str,
+    id: String,
+    title: String,
+    label: String,
     /// Column of the history or of the derived series.
-    column: &'static str,
+    column: String,
+    #[serde(default)]
     derived: bool,
     /// SI to the axis.
+    #[serde(default = "one")]
     scale: f64,
     /// Reference curves with this quantity are drawn.
-    reference: &'static str,
-    /// Band of the events to mark: name, and whether it bounds the time axis.
-    bands: &'static [&'static str],
+    reference: String,
+    /// Bands of the events to mark.
+    #[serde(default)]
+    bands: Vec<String>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Charts {
+    chart: Vec<Quantity>,
 }
 
 /// Charts of the plate under impact.
-const PLATE: [Quantity; 7] = [
-    Quantity {
-        bands: &["first-elastic-peak-time", "second-elastic-peak-time"],
-        ..quantity("elastic-energy", "Elastic energy", "elastic energy (J/m)", "elastic_j", "plate/elastic-energy")
-    },
-    Quantity {
-        derived: true,
-        bands: &["branching-time"],
-        ..quantity(
-            "fracture-increment",
-            "Fracture energy since the start",
-            "fracture energy increment (J/m)",
-            "fracture_increment_j",
-            "plate/fracture-increment",
-        )
-    },
-    quantity("kinetic-energy", "Kinetic energy", "kinetic energy (J/m)", "kinetic_j", "plate/kinetic-energy"),
-    quantity("external-work", "Work of the tractions", "external work (J/m)", "external_work_j", "plate/external-work"),
-    Quantity {
-        scale: 1e3,
-        bands: &["branching-time"],
-        ..quantity("tip-position", "Crack tip along the plate", "tip x (mm)", "crack_tip_x_m", "plate/tip-x")
-    },
-    Quantity {
-        scale: 1e3,
-        bands: &["branching-time"],
-        ..quantity(
-            "tip-height",
-            "Crack tip across the plate (upper half)",
-            "tip y (mm)",
-            "crack_tip_y_m",
-            "plate/tip-y",
-        )
-    },
-    Quantity {
-        derived: true,
-        ..quantity(
-            "tip-speed",
-            "Crack tip speed along the plate, fitted over ±2 µs",
-            "dx/dt of the tip (m/s)",
-            "tip_speed_m_per_s",
-            "plate/tip-x",
-        )
-    },
-];
+static PLATE: LazyLock<Charts> =
+    LazyLock::new(|| toml::from_str(include_str!("figures.toml")).expect("figures.toml lists charts; a test reads it"));
 
-/// A column of the history in SI units, without events.
-const fn quantity(
-    id: &'static str,
-    title: &'static str,
-    label: &'static str,
-    column: &'static str,
-    reference: &'static str,
-) -> Quantity {
-    Quantity { id, title, label, column, derived: false, scale: 1.0, reference, bands: &[] }
+fn one() -> f64 {
+    1.0
 }
 
 /// Charts and pictures of all runs, and the tables they need beyond those of the runs. Variants of one case,
@@ -90,12 +54,12 @@ pub fn of_runs(runs: &[RunInfo], library: &Library) -> (Vec<Figure>, Vec<(String
     let of_plate = runs.iter().filter(|r| r.suite == "plate");
     let (plates, variants): (Vec<&RunInfo>, Vec<&RunInfo>) = of_plate.partition(|r| r.variant.is_empty());
     if !plates.is_empty() {
-        for quantity in &PLATE {
+        for quantity in &PLATE.chart {
             figures.push(chart(quantity, "plate", &plates, library, &mut tables));
         }
     }
     for runs in variants.chunk_by(|a, b| a.case == b.case) {
-        for quantity in &PLATE {
+        for quantity in &PLATE.chart {
             let case = &runs[0].case;
             let figure = chart(quantity, &format!("plate-{case}"), runs, library, &mut tables);
             figures.push(Figure { title: format!("{}: {}", figure.title, case.replace('-', " ")), ..figure });
@@ -141,7 +105,7 @@ fn chart(
     tables: &mut Vec<(String, Table)>,
 ) -> Figure {
     let mut curves = Vec::new();
-    for reference in library.curves(quantity.reference) {
+    for reference in library.curves(&quantity.reference) {
         let (mut curve, mut table) = reference.series(1e6, quantity.scale);
         if quantity.id == "tip-speed" {
             (curve, table) = speed_of(reference, curve);
@@ -153,7 +117,7 @@ fn chart(
         let energy = quantity.column.ends_with("_j");
         let scale = quantity.scale * if energy { run.energy_factor } else { 1.0 };
         let series = if quantity.derived { run.derived() } else { run.series.clone() };
-        curves.push(Curve::history(&run.label, &series, quantity.column, scale));
+        curves.push(Curve::history(&run.label, &series, &quantity.column, scale));
     }
     let bands = quantity.bands.iter().filter_map(|name| library.band("plate-events", name));
     let regions =
@@ -161,10 +125,10 @@ fn chart(
     Figure {
         id: format!("{prefix}-{}", quantity.id),
         suite: "plate".into(),
-        title: quantity.title.into(),
+        title: quantity.title.clone(),
         caption: captions(runs),
         deviations: deviations(runs),
-        body: FigureBody::over_time(quantity.label, curves, regions.collect()),
+        body: FigureBody::over_time(&quantity.label, curves, regions.collect()),
     }
 }
 

@@ -27,7 +27,7 @@ impl TotalFrame {
             let stress = stress_at(&self.moduli, strain, degraded);
             let stress_out_of_plane = stress_out_of_plane(&self.moduli, strain, degraded);
             let drive = |f: &LatticeFracture| {
-                // with a threshold it is the present one, which is stored where it is near the threshold alone
+                // with a threshold it is the present one, and stored only where it is near the threshold
                 let present = || driving_energy(&self.moduli, f.model.split, strain.map(Lane::splat))[0];
                 if f.has_threshold() { present() } else { f.history[batch][lane] }
             };
