@@ -58,7 +58,7 @@ impl InvertedPoint {
 /// What only a point of a fracturing body has.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointFracture {
-    /// History energy H, J/m³.
+    /// History energy H, or with a threshold the present driving energy, J/m³.
     pub history: f64,
     /// Phase field of the last solve that succeeded.
     pub phase: f64,

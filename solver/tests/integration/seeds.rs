@@ -204,10 +204,19 @@ fn the_toughness_of_the_mesh_is_gc_over_the_cost_of_a_crack() {
     };
     let mesh = notched_plate(3e6).mesh;
     let h = mesh.knots[0].windows(2).map(|k| k[1] - k[0]).fold(0.0, larger);
-    let by_key = run(&|fracture| fracture.mesh_toughness = true);
-    let by_hand = run(&|fracture| fracture.critical_energy_release_rate /= 1.0 + 0.12 * h / L0);
-    approx::assert_relative_eq!(by_key, by_hand, max_relative = 1e-6);
-    assert!((run(&|_| {}) / by_key - 1.0).abs() > 1e-4, "it makes a difference");
+    for (model, a) in [(CrackModel::At2, 0.12), (CrackModel::At1, 0.15)] {
+        let with = |length: f64, key: bool, cost: f64| {
+            run(&|fracture| {
+                (fracture.model, fracture.length_scale, fracture.mesh_toughness) = (model, length, key);
+                fracture.critical_energy_release_rate /= cost;
+            })
+        };
+        let by_key = with(L0, true, 1.0);
+        approx::assert_relative_eq!(by_key, with(L0, false, 1.0 + a * h / L0), max_relative = 1e-6);
+        assert!((with(L0, false, 1.0) / by_key - 1.0).abs() > 1e-4, "{model:?}: it makes a difference");
+        let keeps_gc = with(h / 2.5, true, 1.0) == with(h / 2.5, false, 1.0);
+        assert_eq!(keeps_gc, model == CrackModel::At1, "spans of 2.5 l0");
+    }
     let warnings = |change: &dyn Fn(&mut Scene)| {
         let mut scene = seeded(L0, [2, 2], Crack::seed([0.0, 5e-3], [5e-3, 5e-3]));
         scene.materials.get_mut("glass").unwrap().fracture.as_mut().unwrap().mesh_toughness = true;

@@ -204,7 +204,9 @@ impl HeldEdges {
             archive.value(&mut edge.reaction)?;
             let mut kept: Vec<[f64; 2]> = edge.points.iter().map(|(_, point)| point.position).collect();
             archive.value(&mut kept)?;
-            edge.points.retain(|(_, point)| kept.contains(&point.position)); // a fragment has a part of them
+            if archive.is_reader() {
+                edge.points.retain(|(_, point)| kept.contains(&point.position)); // a fragment has a part of them
+            }
             if edge.points.len() != kept.len() {
                 return Err(StateError::of_another_scene("a condition holds other places"));
             }
