@@ -20,7 +20,8 @@ pub fn exhibits(records: Records) -> Vec<Exhibit> {
     let reading = reading.filter(|text| !text.is_empty()).collect::<Vec<_>>().join(" ");
     let title = "Benchmarks: error against time";
     let chart = Chart::of_time("timing/scoreboard", title, &lines, "processor time of the run (s)");
-    let caption = "Whole runs on one thread with a solve for the phase field in every step, on uniform meshes; this \
-                   solver also with spans that are halved along the crack; the references are extrapolated from runs of the same elements, which favours them";
+    let caption = "Whole runs on one thread with a solve for the phase field in every step. Meshes are uniform, and \
+                   this solver also runs with spans that are halved along the crack. The references are \
+                   extrapolated from runs of the same elements, which favours them";
     vec![chart.plot(caption, reading)]
 }
