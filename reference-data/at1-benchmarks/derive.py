@@ -78,9 +78,8 @@ def passed(run, length):
     return t0 + (START + length - x0) / (x1 - x0) * (t1 - t0)
 
 
-arrests = [load(f"arrest-h{size}") for size in ("0.05625", "0.0375", "0.01875")]
 corrected = [load(f"arrest-kappa-h{size}") for size in ("0.05625", "0.0375", "0.01875")]
-at_rest = [next(row for row in run if row["time_us"] == 200) for run in arrests]
+at_rest = [next(row for row in run if row["time_us"] == 200) for run in corrected]
 entry("arrest/length", "mm", [row["tip_x_mm"] - START for row in at_rest], 2, equal=False)
 entry("arrest/fracture-energy-200-us", "J/m", [row["fracture_j_per_m"] for row in at_rest], 2, equal=False)
 for length in (5, 10, 15):

@@ -12,6 +12,7 @@ use fisura_reports::paper::{PaperFigure, cases_of};
 use fisura_reports::{FigureError, SeriesSet, bundle, read_results};
 use fisura_verification::output::OutputFolder;
 use fisura_verification::record::{Figure, FigureBody, ResultSet};
+use fisura_verification::reference::{Library, Source};
 use fisura_verification::suite::{Case, Options, read_cases};
 use serde_json::json;
 
@@ -84,12 +85,18 @@ fn draw(
 ) -> Result<(), Failure> {
     let mut found = wanted.find(results, source, args.from.is_none())?;
     found.sort_by(|a, b| a.0.cmp(&b.0));
+    let library = crate::verify::library()?;
     folder.begin(|_| false)?;
     let mut files = Vec::new();
     for (name, figure) in &found {
         let inputs = inputs(results, figure);
         let written = bundle::write((source, figure), (folder, name), &results.environment, inputs)?;
         files.extend(written.into_iter().map(|file| folder.path().join(file).display().to_string()));
+        let bibtex = bibtex(&library, figure);
+        if !bibtex.is_empty() {
+            folder.write(&format!("{name}.bib"), bibtex)?;
+            files.push(folder.path().join(format!("{name}.bib")).display().to_string());
+        }
     }
     if args.animate {
         for (name, svg) in animated(source, &found)? {
@@ -100,6 +107,16 @@ fn draw(
     folder.finish()?;
     console::show(common, &json!({ "paper": args.paper, "files": files }), || files.join("\n") + "\n");
     Ok(())
+}
+
+/// The entries of the sources whose curves a figure draws.
+fn bibtex(library: &Library, figure: &Figure) -> String {
+    let FigureBody::Chart { curves, .. } = &figure.body else { return String::new() };
+    let drawn = |source: &&Source| {
+        let series = format!("reference-{}-", source.id.replace('/', "-"));
+        curves.iter().any(|curve| curve.series.contains(&series))
+    };
+    library.sources().iter().filter(drawn).filter_map(|source| source.bibtex.clone()).collect()
 }
 
 /// A moving picture of all pictures whose names differ in the time at their end alone: name and SVG.

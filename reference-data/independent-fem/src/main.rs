@@ -119,6 +119,7 @@ fn cracking(options: &Options, material: Material) -> Material {
 fn run_kalthoff(options: &Options) -> Result<(), Box<dyn Error>> {
     let run = Kalthoff {
         h: options.h_mm * 1e-3,
+        graded: options.graded,
         material: cracking(options, kalthoff::steel(options.plane_stress)),
         tolerance: (!options.frozen).then_some(options.tolerance),
         fraction: options.fraction,

@@ -127,7 +127,7 @@ impl Mapped {
         let y = lines(
             &[
                 vec![(17e-3, most)],
-                growing(33.6e-3, 17e-3, h, most),
+                growing(33.2e-3, 17e-3, h, most),
                 vec![(34.75e-3, h), (35.25e-3, h), (35.8e-3, h), (36e-3, 1.2 * h)],
                 growing(36e-3, 53e-3, 1.5 * h, most),
                 vec![(64e-3, most), (70e-3, most)],
@@ -144,7 +144,7 @@ impl Mapped {
         };
         let material = self.material(2.4e9, 0.42, 1180.0, 267.0);
         let of_mesh = self.relative_toughness();
-        let is_fine = |[x, y]: [f64; 2]| (74e-3..104e-3).contains(&x) && (33.6e-3..36e-3).contains(&y);
+        let is_fine = |[x, y]: [f64; 2]| (74e-3..104e-3).contains(&x) && (33.2e-3..36e-3).contains(&y);
         let toughness = |place| if is_fine(place) { of_mesh } else { 1.0 };
         let mut body = QuadBody::new(mesh.without(slot), material, Split::Rankine, toughness);
         for (n, [x, y]) in body.mesh.nodes.clone().into_iter().enumerate() {

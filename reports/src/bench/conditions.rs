@@ -50,6 +50,9 @@ pub fn threads(records: Records) -> Vec<Exhibit> {
     vec![chart.exhibit(caption, reading)]
 }
 
+/// Most time of a sweep over that of the larger ceiling.
+const CEILING: f64 = 1.2;
+
 /// Bandwidth, arithmetic, and how far the elastic sweep is from both.
 pub fn ceilings(records: Records) -> Vec<Exhibit> {
     let (Some(triad), Some(add)) = (records.get("ceilings/triad"), records.get("ceilings/multiply-add")) else {
@@ -79,9 +82,10 @@ pub fn ceilings(records: Records) -> Vec<Exhibit> {
         ]);
         let degree = sweep.number("degree").unwrap_or(f64::NAN);
         let beyond = if distance < 1.0 { ", and is faster than the measured ceiling" } else { "" };
+        let word = if distance <= CEILING { "met" } else { "missed" };
         let distance = plain(distance, 3);
         notes.push(format!(
-            "the sweep of p = {degree} takes {distance} times the time of its ceiling ({bound}){beyond}"
+            "the sweep of p = {degree} takes {distance} times the time of its ceiling ({bound}; target ≤ {CEILING}, {word}){beyond}"
         ));
     }
     let moving =

@@ -43,6 +43,17 @@ pub enum Target {
     None,
 }
 
+impl Target {
+    /// In a table; a dash without one.
+    pub fn words(self) -> String {
+        match self {
+            Self::AtMost(limit) => format!("≤ {}", plain(limit, 3)),
+            Self::AtLeast(limit) => format!("≥ {}", plain(limit, 3)),
+            Self::None => "–".into(),
+        }
+    }
+}
+
 /// A ratio with its spread and whether its target is met; `verified` if all answers behind it hold.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Found {
@@ -127,16 +138,15 @@ pub fn exhibits(records: Records) -> Vec<Exhibit> {
     let judged: Vec<bool> = found.iter().filter_map(Found::holds).collect();
     let met = judged.iter().filter(|holds| **holds).count();
     let rows = found.iter().map(|ratio| {
-        let target = match ratio.target {
-            Target::AtMost(limit) => format!("≤ {}", plain(limit, 3)),
-            Target::AtLeast(limit) => format!("≥ {}", plain(limit, 3)),
-            Target::None => "–".into(),
-        };
         let [what, median, word, why] =
             [ratio.what.clone(), plain(ratio.value.median, 3), ratio.word().into(), ratio.why.clone()];
-        vec![what, median, range(ratio.value), target, word, why]
+        vec![what, median, range(ratio.value), ratio.target.words(), word, why]
     });
-    let note = format!("{met} of {} targets are met in this run.", judged.len());
+    let mut note = format!("{met} of {} targets are met in this run.", judged.len());
+    let unknown = super::plate_match::not_judged(records);
+    if !unknown.is_empty() {
+        note += &format!(" Not judged, since twice the uncertainty of the reference is larger: {unknown}.");
+    }
     let head = ["ratio", "median", "rounds", "target", "verdict", "why, and what bounds it"];
     vec![Exhibit::grid("Ratios within this run", &head, rows, note)]
 }

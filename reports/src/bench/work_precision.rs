@@ -71,7 +71,8 @@ pub(super) fn on_finest(lines: &[Line], spans: &str) -> String {
 /// Errors at which two groups of lines are compared.
 const ERRORS: [f64; 6] = [0.05, 0.02, 0.01, 0.008, 0.005, 0.003];
 
-/// What the best lines of two groups take to an error that both reach, and the ratio.
+/// What the best lines of two groups take to an error that both reach, not below twice the uncertainty of the
+/// reference, and the ratio.
 pub(super) fn at_equal_error(groups: [Vec<&Line>; 2]) -> String {
     let best = |group: &[&Line], error: f64| {
         let cost = |line: &&Line| Some((line.label.clone(), cost_to_reach(&line.points(Cost::Time), error)?));
@@ -82,7 +83,9 @@ pub(super) fn at_equal_error(groups: [Vec<&Line>; 2]) -> String {
         let [percent, slow_s, fast_s, ratio] = [100.0 * error, slow, fast, slow / fast].map(|value| plain(value, 2));
         Some(format!("For an error of {percent} %: {first}, {slow_s} s; {second}, {fast_s} s; ratio {ratio}."))
     };
-    ERRORS.iter().filter_map(sentence).collect::<Vec<_>>().join(" ")
+    let known = groups.iter().flatten().flat_map(|line| &line.records).filter_map(|r| r.error.as_ref());
+    let least = known.fold(0.0, |least: f64, error| least.max(2.0 * error.uncertainty));
+    ERRORS.iter().filter(|error| **error >= least).filter_map(sentence).collect::<Vec<_>>().join(" ")
 }
 
 /// Records whose answers hold, by label, in the order in which labels appear.

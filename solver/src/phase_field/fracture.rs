@@ -134,8 +134,8 @@ impl LatticeFracture {
             let level = model.screening_level(&moduli, awake.least_threshold());
             let mut reached = vec![false; lattice.cells()];
             let strips = reached.chunks_mut(cells_of_strip);
-            let kernel =
-                |reached| ScreenedStress { moduli, level, span, reached, most: Lane::ZERO, energy: Lane::ZERO };
+            let [most, energy] = [Lane::ZERO; 2];
+            let kernel = |reached| ScreenedStress { moduli, level, span, left: span, reached, most, energy };
             let mut kernels: Vec<_> = strips.map(kernel).collect();
             sweep_with(kinematics, lattice, fields, &mut kernels, Some(forces));
             self.intact_energy = Some(kernels.iter().map(|k| k.energy.sum()).sum());

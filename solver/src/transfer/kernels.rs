@@ -167,8 +167,9 @@ pub(crate) struct ScreenedStress<'a> {
     pub moduli: ElasticModuli,
     /// J/m³.
     pub level: f64,
-    /// Batches in a cell.
+    /// Batches in a cell, and those of the present one that are left.
     pub span: usize,
+    pub left: usize,
     /// Whether a cell of the strip reaches it.
     pub reached: &'a mut [bool],
     /// Largest energy density in the present cell, J/m³.
@@ -188,9 +189,10 @@ impl PointKernel for ScreenedStress<'_> {
         self.energy = self.energy.add_product::<FMA>(weight, energy);
         let here = energy.zip(weight, |energy, weight| if weight > 0.0 { energy } else { 0.0 });
         self.most = here.at_least(self.most);
-        if (at + 1).is_multiple_of(self.span) {
+        self.left -= 1;
+        if self.left == 0 {
             self.reached[at / self.span] = self.most.0.iter().any(|&energy| energy >= self.level);
-            self.most = Lane::ZERO;
+            (self.left, self.most) = (self.span, Lane::ZERO);
         }
         Stress::symmetric(self.moduli.stress(strain))
     }
@@ -259,11 +261,11 @@ impl PointKernel for LargestDistortion<'_> {
         let (sine, cosine) = (yx - xy, xx + yy + Lane::splat(2.0));
         let tangent = sine.zip(cosine, |sine, cosine| if cosine <= 0.0 { f64::INFINITY } else { sine.abs() / cosine });
         let weight = of_intact(weight, self.phase, at);
-        let turned = tangent.zip(weight, |tangent, w| if w > 0.0 { tangent } else { 0.0 });
-        self.size = self.size.zip(turned, larger);
+        let of_points = |size: Lane| size.zip(weight, |size, w| if w > 0.0 { size } else { 0.0 });
+        self.size = self.size.zip(of_points(tangent), larger);
         if self.phase.is_empty() {
             let strain = |l: usize| largest_principal([xx.0[l], yy.0[l], 0.5 * (xy.0[l] + yx.0[l])]);
-            self.size = self.size.zip(Lane(std::array::from_fn(strain)), larger);
+            self.size = self.size.zip(of_points(Lane(std::array::from_fn(strain))), larger);
         }
         Stress::ZERO
     }

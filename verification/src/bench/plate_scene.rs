@@ -93,7 +93,7 @@ pub fn with_toughness_of_mesh(case: &mut CaseScene) -> Result<(), BenchError> {
 }
 
 /// Open knots with spans of about the given length in each part `(from, to, length)`.
-fn open_knots(degree: usize, parts: &[(f64, f64, f64)]) -> Vec<f64> {
+pub fn open_knots(degree: usize, parts: &[(f64, f64, f64)]) -> Vec<f64> {
     let (start, end) = (parts[0].0, parts[parts.len() - 1].1);
     let mut knots = vec![start; degree];
     for &(from, to, length) in parts {

@@ -37,7 +37,7 @@ const COHESIVE: CrackModel = CrackModel::PfCzm { tensile_strength: 7.5e6, soften
 /// What must have happened in a scene for its time to count.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Happens {
-    /// There is no phase field, and nothing meets.
+    /// Nothing is solved for the phase field, if there is one, and nothing meets.
     Motion,
     /// The phase field is solved for, and its start is accepted every time.
     NothingGrows,
@@ -81,6 +81,11 @@ fn scenes(cells: usize, frame: Frame) -> Vec<(&'static str, Scene, Happens)> {
         ("fracture", fracture.clone(), Happens::CrackGrows),
     ];
     if frame == Frame::Total {
+        let mut intact = fracture.clone();
+        (intact.bodies[0].tractions, intact.bodies[0].cracks) = Default::default();
+        let cracks = intact.materials.values_mut().filter_map(|material| material.fracture.as_mut());
+        cracks.for_each(|fracture| fracture.model = CrackModel::At1);
+        scenes.push(("AT1 that does not crack", intact, Happens::Motion));
         scenes.extend(MODELS.map(|(name, model, split)| {
             let mut scene = fracture.clone();
             let cracks = scene.materials.values_mut().filter_map(|material| material.fracture.as_mut());

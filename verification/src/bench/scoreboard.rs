@@ -1,10 +1,10 @@
 //! What an error of the benchmarks costs: whole runs of this solver and of the independent finite elements
-//! ([`elements`]) in the same rounds, on one thread. Both have a uniform mesh where the crack runs, nearly
-//! their own critical step, and solve for the phase field in every step. This solver has long spans at the
-//! free sides, and runs once more with spans that are halved along the crack. The references are
-//! extrapolated from runs of the same elements, two of which are repeated here: this favours them. The
-//! plate, whose elements are graded, has a family of its own ([`super::plate`]). Strip, ring and arrest are
-//! not here: their elements take any quadrilaterals and are not made for speed.
+//! ([`elements`]) in the same rounds, on one thread. Both take nearly their own critical step and solve for
+//! the phase field in every step, both with Gc and with Gc/kappa. Where a crack runs, both are graded: spans
+//! and elements are two and four times as long elsewhere. This solver runs once more with equal spans that are
+//! halved along the crack. The references are extrapolated from runs of the same elements, some of which are
+//! repeated here: this favours them. The plate has a family of its own ([`super::plate`]). The elements of
+//! strip, ring and arrest take any quadrilaterals and are not made for speed, so there this solver is alone.
 //!
 //! The error of a run is the root mean square of the relative errors of the numbers that the case compares
 //! with the reference, measured in the same way for both programs. Numbers whose reference is uncertain by
@@ -14,8 +14,12 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
+use fisura::material::mesh_toughness::slope;
+use serde::Deserialize;
+
 use super::elements;
 use super::peer::program::Program;
+use super::plate_scene::open_knots;
 use super::record::{AnswerError, BenchRecord};
 use super::timing::{Contestant, pool, round_robin, whole_run};
 use super::{BenchError, Settings};
@@ -36,30 +40,54 @@ const CLOSURE: f64 = 2e-2;
 /// Largest uncertainty of a reference that counts, relative.
 const KNOWN: f64 = 0.05;
 
-/// A problem on its meshes.
+/// A problem on its meshes, as `templates/scoreboard.toml` has it.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
 struct Contest {
-    name: &'static str,
+    name: String,
     /// Case whose checks name the reference.
-    case: &'static str,
-    /// Cells in each direction and how often they are halved along the crack, from coarse to fine.
-    meshes: &'static [(usize, usize)],
-    /// Sides with long spans.
-    long_ends: &'static str,
-    /// Options of the elements, and their sizes in mm.
-    elements: (&'static [&'static str], &'static [&'static str]),
+    case: String,
+    /// Changes of its scene, on every mesh.
+    #[serde(default)]
+    set: Vec<String>,
+    /// Ends of the parts of a graded mesh in x and y, mm, and the spans in each over the shortest.
+    #[serde(default)]
+    parts_mm: [Vec<f64>; 2],
+    #[serde(default)]
+    lengths: Vec<f64>,
+    /// Meshes from coarse to fine, and how many of them a quick run has.
+    meshes: Vec<Mesh>,
+    quick: usize,
+    /// Energy that a unit of new crack costs, J/m², if one runs: then all run with Gc and with Gc/kappa.
+    toughness: Option<f64>,
+    elements: Option<Elements>,
 }
 
-/// All of them; a quick run has the first meshes of each.
-const PROBLEMS: [Contest; 1] = [Contest {
-    name: "kalthoff",
-    case: "kalthoff-at1-fine",
-    meshes: &[(128, 0), (64, 1), (192, 0), (96, 1), (48, 2), (256, 0), (128, 1), (64, 2), (384, 0), (192, 1)],
-    long_ends: r#"["left", "right", "top"]"#,
-    elements: (
-        &["--kalthoff", "--at1", "--length-scale-mm", "0.75", "--toughness", "22130", "--end-us", "48"],
-        &["0.5", "0.25", "0.2"],
-    ),
-}];
+/// Options of the elements, their sizes in mm from coarse to fine, and how many of them a quick run has.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Elements {
+    options: Vec<String>,
+    sizes: Vec<f64>,
+    quick: usize,
+}
+
+/// One of these: spans of the graded mesh that are so short along the crack, mm; as many cells in each
+/// direction, halved so many times along the crack; the mesh of the case with its spans divided.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+enum Mesh {
+    Graded(f64),
+    Equal(usize),
+    Halved(usize, usize),
+    Divided(usize),
+}
+
+/// The file.
+#[derive(Deserialize)]
+struct Contests {
+    problem: Vec<Contest>,
+}
 
 /// Columns of the elements, and the names and factors to SI that the cases know them by.
 const COLUMNS: [(&str, &str, f64); 7] = [
@@ -79,16 +107,23 @@ const COLUMNS: [(&str, &str, f64); 7] = [
 pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
     let library = Arc::new(settings.library()?);
     let built = settings.elements.get_or_init(|| elements::build(&settings.workspace));
+    let contests: Contests = toml::from_str(include_str!("../../templates/scoreboard.toml"))
+        .map_err(|error| BenchError::input(error.to_string()))?;
     pool(1)?.install(|| {
         let mut contestants = Vec::new();
-        for problem in &PROBLEMS {
-            let (meshes, (_, sizes)) = (problem.meshes, problem.elements);
-            for &mesh in &meshes[..if settings.quick { 4 } else { meshes.len() }] {
-                contestants.push(ours(settings, problem, mesh, &library)?);
+        for problem in &contests.problem {
+            let few = |all: usize, quick: usize| if settings.quick { quick } else { all };
+            let toughness = [problem.toughness.map_or(Toughness::None, |_| Toughness::Whole), Toughness::OfMesh];
+            let toughness = &toughness[..1 + usize::from(problem.toughness.is_some())];
+            for mesh in &problem.meshes[..few(problem.meshes.len(), problem.quick)] {
+                for &toughness in toughness {
+                    contestants.push(ours(settings, problem, mesh, toughness, &library)?);
+                }
             }
-            for h in &sizes[..if settings.quick { 1 } else { sizes.len() }] {
-                if let Ok(program) = built {
-                    contestants.push(theirs(settings, problem, program, h, &library)?);
+            let (Some(elements), Ok(program)) = (&problem.elements, built) else { continue };
+            for &h in &elements.sizes[..few(elements.sizes.len(), elements.quick)] {
+                for &toughness in toughness {
+                    contestants.push(theirs(settings, problem, (program, elements), (h, toughness), &library)?);
                 }
             }
         }
@@ -96,29 +131,67 @@ pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
     })
 }
 
-/// The case of a problem on one mesh, and its first scene without pictures.
-fn load(settings: &Settings, problem: &Contest, mesh: &[String]) -> Result<(Case, CaseScene), BenchError> {
+/// What a crack costs, if there is one: Gc, or Gc over what it costs on the mesh.
+#[derive(Clone, Copy, PartialEq)]
+enum Toughness {
+    None,
+    Whole,
+    OfMesh,
+}
+
+impl Toughness {
+    /// In labels and in ids.
+    fn words(self) -> [&'static str; 2] {
+        match self {
+            Self::None => ["", ""],
+            Self::Whole => [", Gc", "-gc"],
+            Self::OfMesh => [", Gc/κ", "-kappa"],
+        }
+    }
+}
+
+/// The case of a problem with changes of its scene, and its first scene.
+fn load(settings: &Settings, problem: &Contest, set: &[String]) -> Result<(Case, CaseScene), BenchError> {
     let name = format!("benchmarks/{}", problem.case);
-    Ok((settings.case(&name, mesh)?, settings.scene(&name, mesh)?))
+    Ok((settings.case(&name, set)?, settings.scene(&name, set)?))
 }
 
 fn ours(
     settings: &Settings,
     problem: &Contest,
-    (cells, halvings): (usize, usize),
+    mesh: &Mesh,
+    toughness: Toughness,
     library: &Arc<Library>,
 ) -> Result<Contestant<'static>, BenchError> {
-    let ends = format!("mesh.long_ends={}", problem.long_ends);
-    let mesh = format!("mesh.cells=[{cells}, {cells}]");
-    let (case, mut scene) = load(settings, problem, &[mesh, ends, SAFETY.to_string()])?;
-    scene.scene.mesh.halvings = halvings;
-    let degree = scene.scene.mesh.degree[0];
-    let [mark, words] =
-        if halvings > 0 { [format!("-r{halvings}"), format!(", refined {halvings}×")] } else { Default::default() };
-    let mesh = format!("{cells} × {cells}{words}");
-    let id = format!("scoreboard/{}/fisura/{cells}{mark}", problem.name);
-    let label = format!("{}: fisura, p = {degree}{words}", problem.name);
-    let record = BenchRecord::new(id, label, 1.0, "run").with("problem", problem.name).with("mesh", mesh);
+    let cells = |n: usize| format!("mesh.cells=[{n}, {n}]");
+    let (name, words, key) = match *mesh {
+        Mesh::Graded(h) => (format!("{h:.2}"), ", graded".to_string(), cells(64)),
+        Mesh::Equal(n) => (n.to_string(), String::new(), cells(n)),
+        Mesh::Halved(n, times) => (format!("{n}-r{times}"), format!(", refined {times}×"), cells(n)),
+        Mesh::Divided(n) => (n.to_string(), String::new(), format!("mesh.subdivide={n}")),
+    };
+    let set = [&problem.set[..], &[SAFETY.to_string(), key]].concat();
+    let (case, mut scene) = load(settings, problem, &set)?;
+    let shape = &mut scene.scene.mesh;
+    let degree = shape.degree[0];
+    match *mesh {
+        Mesh::Graded(h) => {
+            shape.knots = problem.parts_mm.each_ref().map(|ends| {
+                let parts = ends.windows(2).zip(&problem.lengths);
+                let parts = parts.map(|(ends, times)| (1e-3 * ends[0], 1e-3 * ends[1], 1e-3 * h * times));
+                open_knots(degree, &parts.collect::<Vec<_>>())
+            });
+        }
+        Mesh::Halved(_, times) => shape.halvings = times,
+        Mesh::Equal(_) | Mesh::Divided(_) => {}
+    }
+    for fracture in scene.scene.materials.values_mut().filter_map(|material| material.fracture.as_mut()) {
+        fracture.mesh_toughness = toughness == Toughness::OfMesh;
+    }
+    let [by, mark] = toughness.words();
+    let id = format!("scoreboard/{}/fisura/{name}{mark}", problem.name);
+    let label = format!("{}: fisura, p = {degree}{words}{by}", problem.name);
+    let record = BenchRecord::new(id, label, 1.0, "run").with("problem", &*problem.name).with("mesh", name);
     let library = Arc::clone(library);
     let (simulated, factor) = (scene.scene.clone(), scene.energy_factor);
     let answer = move |record: &mut BenchRecord, history: &Table| {
@@ -130,18 +203,27 @@ fn ours(
 fn theirs(
     settings: &Settings,
     problem: &Contest,
-    program: &Path,
-    h: &str,
+    (program, elements): (&Path, &Elements),
+    (h, toughness): (f64, Toughness),
     library: &Arc<Library>,
 ) -> Result<Contestant<'static>, BenchError> {
     let (case, scene) = load(settings, problem, &[])?;
-    let label = format!("{}: elements", problem.name);
-    let id = format!("scoreboard/{}/elements/{h}", problem.name);
-    let record = BenchRecord::new(id, label, 1.0, "run").with("problem", problem.name).with("mesh", format!("{h} mm"));
+    let [by, mark] = toughness.words();
+    let label = format!("{}: elements{by}", problem.name);
+    let id = format!("scoreboard/{}/elements/{h}{mark}", problem.name);
+    let record =
+        BenchRecord::new(id, label, 1.0, "run").with("problem", &*problem.name).with("mesh", format!("{h} mm"));
     let file = settings.workspace.join("target/independent-fem").join(format!("{}.csv", problem.name));
     let mut words = vec![program.display().to_string()];
-    words.extend(problem.elements.0.iter().map(|word| word.to_string()));
-    words.extend(["--fraction", "1", "--interval-us", "0.25", "--h-mm", h, "--out"].map(String::from));
+    words.extend(elements.options.iter().cloned());
+    words.extend(["--fraction", "1", "--interval-us", "0.25", "--tolerance", "1e-4"].map(String::from));
+    let fracture = scene.scene.materials.values().find_map(|material| material.fracture.as_ref());
+    if let Some((fracture, gc)) = fracture.zip(problem.toughness) {
+        let slope = slope(fracture.model, 1, 2).filter(|_| toughness == Toughness::OfMesh).unwrap_or(0.0);
+        let kappa = 1.0 + slope * 1e-3 * h / fracture.length_scale;
+        words.extend(["--toughness".into(), format!("{:.9}", gc / kappa)]);
+    }
+    words.extend(["--h-mm".into(), h.to_string(), "--out".into()]);
     let (program, library) = (Program::of_words(words, LIMIT), Arc::clone(library));
     let answer = move |record: &mut BenchRecord, table: &Table| {
         record.verify_at_most("balance of energies over the largest", open(table), CLOSURE);

@@ -47,6 +47,8 @@ pub struct Source {
     pub id: String,
     /// Citation.
     pub citation: String,
+    /// The same as an entry of BibTeX, where there is one.
+    pub bibtex: Option<String>,
     /// Address, where there is one.
     pub url: Option<String>,
     /// How the numbers were obtained.

@@ -62,6 +62,7 @@ fn every_committed_folder_loads_and_says_where_it_comes_from() {
         assert!(ids.contains(&folder), "{folder} is missing in {ids:?}");
     }
     for source in library.sources() {
+        assert!(source.bibtex.as_ref().is_none_or(|entry| entry.starts_with('@')), "{source:?}");
         assert!(!source.citation.is_empty() && !source.model.is_empty() && !source.resolution.is_empty(), "{source:?}");
     }
     for source in library.bands().iter().flat_map(|b| &b.sources) {
