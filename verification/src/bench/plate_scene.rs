@@ -1,7 +1,7 @@
 //! The half plate of the cases on meshes of any span.
 
 use fisura::material::mesh_toughness::slope;
-use fisura::scene::{CrackKind, CrackModel, Side};
+use fisura::scene::{CrackKind, CrackModel, Mesh, Side};
 
 use super::{BenchError, Settings};
 use crate::case::expand::CaseScene;
@@ -25,8 +25,8 @@ const SAMPLES: usize = 80;
 /// # Errors
 /// If the case is missing or wrong.
 pub fn half(settings: &Settings, degree: usize, h: f64) -> Result<CaseScene, BenchError> {
-    let cells = [400.0, 80.0].map(|n| (n / h).round());
-    let cells = format!("mesh.cells=[{}, {}]", cells[0], cells[1]);
+    let [columns, rows] = cells(h);
+    let cells = format!("mesh.cells=[{columns}, {rows}]");
     let points = degree.max(2);
     let points = format!("body.0.particles_per_cell=[{points}, {points}]");
     let overrides = [cells, points, format!("mesh.degree={degree}"), "output.frames=[]".to_string()];
@@ -36,6 +36,11 @@ pub fn half(settings: &Settings, degree: usize, h: f64) -> Result<CaseScene, Ben
         crack.kind = CrackKind::Seed(Some(larger(1.0, SEED_SPANS * h) * l0));
     }
     Ok(case)
+}
+
+/// Square spans of `h` length scales on the half plate.
+fn cells(h: f64) -> [usize; 2] {
+    [400.0, 80.0].map(|n| (n / h).round() as usize)
 }
 
 /// The same as someone in a hurry would run it: with spans of twice and four times `h` where no crack runs,
@@ -67,9 +72,10 @@ pub fn graded(settings: &Settings, degree: usize, h: f64) -> Result<CaseScene, B
 /// As [`half`].
 pub fn refined(settings: &Settings, degree: usize, h: f64, halvings: usize) -> Result<CaseScene, BenchError> {
     let mut case = half(settings, degree, h)?;
-    let coarse = half(settings, degree, h * 2f64.powi(halvings as i32))?;
-    case.scene.mesh = coarse.scene.mesh;
-    case.scene.mesh.halvings = halvings;
+    let (low, high) = (case.scene.mesh.origin(), case.scene.mesh.end());
+    let cells = cells(h * 2f64.powi(halvings as i32));
+    let coarse = Mesh::uniform([degree; 2], low, [0, 1].map(|d| high[d] - low[d]), cells);
+    case.scene.mesh = Mesh { halvings, ..coarse };
     in_a_hurry(&mut case);
     Ok(case)
 }
@@ -126,6 +132,8 @@ mod tests {
         let case = half(&settings, 3, 2.0).unwrap();
         let spans = case.scene.mesh.knots.each_ref().map(|knots| knots.len() - 7);
         assert_eq!((spans, case.energy_factor, case.scene.output.frames.len()), ([200, 40], 2.0, 0));
+        let coarsest = refined(&settings, 2, 4.0, 2).unwrap();
+        assert!(fisura::Simulation::new(&coarsest.scene).is_ok(), "16 l0, halved twice");
         let mut case = graded(&settings, 2, 1.0).unwrap();
         with_toughness_of_mesh(&mut case).unwrap();
         assert!(case.scene.materials["glass"].fracture.as_ref().unwrap().mesh_toughness);
