@@ -374,8 +374,8 @@ fn functions_on_seeds(patch: &Patch, body: &Body) -> Vec<usize> {
 }
 
 /// Gc over its mean at the points, 1 where there is none, if it varies or is over the cost of a crack on the
-/// mesh, kappa with the shorter side of the span. AT1 keeps its Gc, and with it its strength, where spans are
-/// longer than its crack is wide to one side: they resolve none.
+/// mesh, kappa with the shorter side of the span. Where spans are longer than 2 l0 they resolve no crack, and
+/// keep Gc and with it the strength; with AT2 only if the mesh has much shorter ones.
 fn relative_toughness(patch: &Patch, lattice: &Lattice, body: &Body, fracture: &Fracture) -> Option<Vec<Lane>> {
     let field = fracture.random.map(RandomField::new);
     if field.is_none() && !fracture.mesh_toughness {
@@ -383,7 +383,8 @@ fn relative_toughness(patch: &Patch, lattice: &Lattice, body: &Body, fracture: &
     }
     let slope = slope_in(fracture, lattice.degree, body).filter(|_| fracture.mesh_toughness);
     let l0 = fracture.length_scale;
-    let longest = if fracture.model == CrackModel::At1 { 2.0 * l0 * (1.0 + ROUND_OFF) } else { f64::INFINITY };
+    let least = if fracture.model == CrackModel::At1 { 0.0 } else { 1.5 * patch.shortest_span() };
+    let longest = larger(2.0 * l0, least) * (1.0 + ROUND_OFF);
     let mut relative = vec![Lane::splat(1.0); lattice.batches()];
     lattice.for_each_point(|batch, lane, place, _| {
         let random = field.as_ref().map_or(1.0, |field| field.at(place));

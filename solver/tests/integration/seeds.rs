@@ -217,6 +217,16 @@ fn the_toughness_of_the_mesh_is_gc_over_the_cost_of_a_crack() {
         let keeps_gc = with(h / 2.5, true, 1.0) == with(h / 2.5, false, 1.0);
         assert_eq!(keeps_gc, model == CrackModel::At1, "spans of 2.5 l0");
     }
+    let beside_short_spans = |key: bool| {
+        let mut scene = notched_plate(3e6);
+        scene.analysis.end_time = 5e-6;
+        let knots = &mut scene.mesh.knots[1];
+        knots.insert(knots.len() - 3, knots[knots.len() - 1] - 0.3 * h);
+        let fracture = scene.materials.get_mut("glass").unwrap().fracture.as_mut().unwrap();
+        (fracture.length_scale, fracture.mesh_toughness) = (h / 2.5, key);
+        crate::common::run(&scene).1.last().unwrap().kinetic
+    };
+    assert_eq!(beside_short_spans(true), beside_short_spans(false), "no span resolves a crack");
     let warnings = |change: &dyn Fn(&mut Scene)| {
         let mut scene = seeded(L0, [2, 2], Crack::seed([0.0, 5e-3], [5e-3, 5e-3]));
         scene.materials.get_mut("glass").unwrap().fracture.as_mut().unwrap().mesh_toughness = true;

@@ -1,7 +1,7 @@
 //! `[solver] accuracy`: what a scene with cracks leaves to the program, chosen for an error of the kinetic
 //! energy and the work.
 //!
-//! The rule is that of the plate of the benchmarks (`reports/gallery/performance-plate.md`, a seed of two
+//! The rule is that of the plate of the benchmarks (`reports/gallery/performance.md`, a seed of two
 //! spans on either side). With the toughness of the mesh and p = 2 both errors are below 1 % on spans of l0;
 //! without it the cost of a crack on spans of l0 is an error of 4 %, which falls with h. A tolerance of a
 //! tenth of the accuracy, and a solve in every second step at 1 %, add less than half of it.
