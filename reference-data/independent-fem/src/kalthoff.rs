@@ -15,8 +15,8 @@ const SLIT: [f64; 2] = [0.025, 0.05];
 /// Velocity of the driven part below the slit, m/s, and the time over which it rises, s.
 const VELOCITY: f64 = 16.5;
 const RISE: f64 = 1e-6;
-/// With grading, where columns and rows of width h begin and end, m: the crack of AT1 and AT2 stays between them
-/// up to 50 us. Beside them elements are 2 h long for 6 mm, then 4 h.
+/// With grading, where short columns and rows begin and end, m: cracks stay between them up to 50 us.
+/// Beside them elements are 2 h long for 6 mm, then 4 h.
 const FINE: [[f64; 2]; 2] = [[0.044, 0.074], [0.019, 0.066]];
 const BESIDE: f64 = 6e-3;
 

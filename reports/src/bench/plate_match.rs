@@ -17,7 +17,7 @@ const LENGTHS: [f64; 5] = [4.0, 2.0, 1.0, 0.5, 0.25];
 /// The smallest error that is compared, and the least of the others, in uncertainties of the reference.
 const UNCERTAINTIES: [f64; 2] = [2.0, 2.05];
 
-/// Quantities, errors, and how many times less time fisura should take at them; elsewhere it should not take more.
+/// Quantities, errors, and how many times less time fisura should take at them; elsewhere not more.
 const TARGETS: [([&str; 2], &[f64], f64); 3] = [
     (["kinetic energy", "external work"], &[0.01], 4.0),
     (["kinetic energy", "external work"], &[0.005, 0.003], 8.0),

@@ -1,4 +1,4 @@
-//! Error against time over the benchmarks, for this solver and for finite elements where they are made for speed.
+//! Error against time over the benchmarks, for this solver and for finite elements that are made for speed.
 
 use super::pareto::cost_to_reach;
 use super::work_precision::{Chart, Cost, Line, at_equal_error, lines};
@@ -36,7 +36,7 @@ pub fn exhibits(records: Records) -> Vec<Exhibit> {
     board.into_iter().chain(plots).collect()
 }
 
-/// What both codes take to an error, if fisura reaches it; of a code that takes no part, or does not reach it, a dash.
+/// What both codes take to an error; a dash for a code that takes no part or does not reach it.
 fn row(problem: &str, codes: &[Vec<&Line>; 2], error: f64) -> Option<Vec<String>> {
     let [elements, fisura] = codes.each_ref().map(|group| {
         let cost = |line: &&Line| Some((line.label.clone(), cost_to_reach(&line.points(Cost::Time), error)?));

@@ -1,7 +1,7 @@
 //! What an error of the benchmarks costs: whole runs of this solver and of the independent finite elements
 //! ([`elements`]) in the same rounds, on one thread. Both take nearly their own critical step and solve for
-//! the phase field in every step, both with Gc and with Gc/kappa. Where a crack runs, both are graded: spans
-//! and elements are two and four times as long elsewhere. This solver runs once more with equal spans that are
+//! the phase field in every step, both with Gc and with Gc/kappa. Where a crack runs both are graded: spans
+//! and elements are two and four times as long elsewhere. This solver runs also with equal spans that are
 //! halved along the crack. The references are extrapolated from runs of the same elements, some of which are
 //! repeated here: this favours them. The plate has a family of its own ([`super::plate`]). The elements of
 //! strip, ring and arrest take any quadrilaterals and are not made for speed, so there this solver is alone.
