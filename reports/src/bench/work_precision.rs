@@ -1,6 +1,7 @@
 //! Error against cost: processor time, particle-steps, memory; with the front of what nothing beats.
 
 use fisura_verification::bench::record::{BenchRecord, Spread};
+use fisura_verification::extremes::larger;
 use fisura_verification::output::history::Table;
 use fisura_verification::record::{Curve, CurveStyle, Floor};
 
@@ -84,7 +85,7 @@ pub(super) fn at_equal_error(groups: [Vec<&Line>; 2]) -> String {
         Some(format!("For an error of {percent} %: {first}, {slow_s} s; {second}, {fast_s} s; ratio {ratio}."))
     };
     let known = groups.iter().flatten().flat_map(|line| &line.records).filter_map(|r| r.error.as_ref());
-    let least = known.fold(0.0, |least: f64, error| least.max(2.0 * error.uncertainty));
+    let least = known.map(|error| 2.0 * error.uncertainty).fold(0.0, larger);
     ERRORS.iter().filter(|error| **error >= least).filter_map(sentence).collect::<Vec<_>>().join(" ")
 }
 
