@@ -38,6 +38,7 @@ mod method;
 mod minimise;
 mod newton;
 mod state;
+mod toughness;
 
 use serde::{Deserialize, Serialize};
 

@@ -245,3 +245,21 @@ fn inputs(set: &ResultSet, figure: &Figure) -> BTreeMap<String, String> {
     let of = |id: String| Some((id.clone(), set.inputs.get(&id)?.clone()));
     cases_of(set, figure).into_iter().filter_map(of).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use fisura_verification::record::{Axis, Curve};
+
+    use super::*;
+
+    #[test]
+    fn a_figure_names_the_sources_of_its_curves() {
+        let library = Library::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../reference-data")).unwrap();
+        let curve = |series| Curve::line("", series, ["x", "y"]);
+        let curves = vec![curve("series/reference-mandal-2020-at1-plate-elastic-energy.csv"), curve("ours.csv")];
+        let [x, y] = ["x", "y"].map(Axis::logarithmic);
+        let body = FigureBody::Chart { x, y, curves, regions: Vec::new(), slopes: Vec::new(), floors: Vec::new() };
+        let entries = bibtex(&library, &Figure::new("plate", ["id", "title", "caption"], body));
+        assert!(entries.starts_with("@article{mandal-2020,") && entries.matches('@').count() == 1, "{entries}");
+    }
+}

@@ -8,14 +8,12 @@ use crate::linear_algebra::extremes::{larger, smaller};
 use crate::linear_algebra::lane::{LANES, Lane};
 use crate::material::degradation::{BROKEN, FractureModel};
 use crate::material::elasticity::ElasticModuli;
-use crate::material::mesh_toughness::slope_in;
-use crate::material::random_field::RandomField;
 use crate::particles::lattice::Lattice;
 use crate::phase_field::PhaseField;
 use crate::phase_field::lag::LagWork;
-use crate::scene::{Body, Crack, CrackKind, CrackModel, Fracture, Kinematics, SolverSettings};
+use crate::phase_field::toughness::relative_toughness;
+use crate::scene::{Body, Crack, CrackKind, Fracture, Kinematics, SolverSettings};
 use crate::splines::patch::Patch;
-use crate::splines::spline::ROUND_OFF;
 use crate::transfer::elastic_forces::elastic_sweep;
 use crate::transfer::finite::sweep_with;
 use crate::transfer::kernels::{DegradedStress, HistoryUpdate, ScreenedStress, SurfaceEnergy};
@@ -134,8 +132,8 @@ impl LatticeFracture {
             let level = model.screening_level(&moduli, awake.least_threshold());
             let mut reached = vec![false; lattice.cells()];
             let strips = reached.chunks_mut(cells_of_strip);
-            let [most, energy] = [Lane::ZERO; 2];
-            let kernel = |reached| ScreenedStress { moduli, level, span, left: span, reached, most, energy };
+            let kernel =
+                |reached| ScreenedStress { moduli, level, span, reached, most: Lane::ZERO, energy: Lane::ZERO };
             let mut kernels: Vec<_> = strips.map(kernel).collect();
             sweep_with(kinematics, lattice, fields, &mut kernels, Some(forces));
             self.intact_energy = Some(kernels.iter().map(|k| k.energy.sum()).sum());
@@ -371,29 +369,6 @@ fn functions_on_seeds(patch: &Patch, body: &Body) -> Vec<usize> {
         }
     }
     found.into_iter().collect()
-}
-
-/// Gc over its mean at the points, 1 where there is none, if it varies or is over the cost of a crack on the
-/// mesh, kappa with the shorter side of the span. Where spans are longer than 2 l0 they resolve no crack, and
-/// keep Gc and with it the strength; with AT2 only if the mesh has much shorter ones.
-fn relative_toughness(patch: &Patch, lattice: &Lattice, body: &Body, fracture: &Fracture) -> Option<Vec<Lane>> {
-    let field = fracture.random.map(RandomField::new);
-    if field.is_none() && !fracture.mesh_toughness {
-        return None;
-    }
-    let slope = slope_in(fracture, lattice.degree, body).filter(|_| fracture.mesh_toughness);
-    let l0 = fracture.length_scale;
-    let least = if fracture.model == CrackModel::At1 { 0.0 } else { 1.5 * patch.shortest_span() };
-    let longest = larger(2.0 * l0, least) * (1.0 + ROUND_OFF);
-    let mut relative = vec![Lane::splat(1.0); lattice.batches()];
-    lattice.for_each_point(|batch, lane, place, _| {
-        let random = field.as_ref().map_or(1.0, |field| field.at(place));
-        let sides = [[1.0, 0.0], [0.0, 1.0]].map(|along| patch.span_across(place, along).unwrap_or(0.0));
-        let resolves = larger(sides[0], sides[1]) <= longest;
-        let cost = slope.filter(|_| resolves).map(|a| 1.0 + a * smaller(sides[0], sides[1]) / l0);
-        relative[batch][lane] = random / fault!("toughness-of-the-mesh-forgotten", cost => None).unwrap_or(1.0);
-    });
-    Some(relative)
 }
 
 /// H0 at the points, with the Gc that is there.

@@ -167,9 +167,8 @@ pub(crate) struct ScreenedStress<'a> {
     pub moduli: ElasticModuli,
     /// J/m³.
     pub level: f64,
-    /// Batches in a cell, and those of the present one that are left.
+    /// Batches in a cell.
     pub span: usize,
-    pub left: usize,
     /// Whether a cell of the strip reaches it.
     pub reached: &'a mut [bool],
     /// Largest energy density in the present cell, J/m³.
@@ -189,10 +188,9 @@ impl PointKernel for ScreenedStress<'_> {
         self.energy = self.energy.add_product::<FMA>(weight, energy);
         let here = energy.zip(weight, |energy, weight| if weight > 0.0 { energy } else { 0.0 });
         self.most = here.at_least(self.most);
-        self.left -= 1;
-        if self.left == 0 {
+        if (at + 1).is_multiple_of(self.span) {
             self.reached[at / self.span] = self.most.0.iter().any(|&energy| energy >= self.level);
-            (self.left, self.most) = (self.span, Lane::ZERO);
+            self.most = Lane::ZERO;
         }
         Stress::symmetric(self.moduli.stress(strain))
     }

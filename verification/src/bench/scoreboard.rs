@@ -58,8 +58,8 @@ struct Contest {
     /// Meshes from coarse to fine, and how many of them a quick run has.
     meshes: Vec<Mesh>,
     quick: usize,
-    /// Energy that a unit of new crack costs, J/m², if one runs: then all run with Gc and with Gc/kappa.
-    toughness: Option<f64>,
+    /// What a crack costs; all runs are made with each.
+    toughness: Vec<Toughness>,
     elements: Option<Elements>,
 }
 
@@ -83,7 +83,9 @@ enum Mesh {
     Divided(usize),
 }
 
-/// The file.
+/// All of them, as a file.
+const CONTESTS: &str = include_str!("../../templates/scoreboard.toml");
+
 #[derive(Deserialize)]
 struct Contests {
     problem: Vec<Contest>,
@@ -107,22 +109,19 @@ const COLUMNS: [(&str, &str, f64); 7] = [
 pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
     let library = Arc::new(settings.library()?);
     let built = settings.elements.get_or_init(|| elements::build(&settings.workspace));
-    let contests: Contests = toml::from_str(include_str!("../../templates/scoreboard.toml"))
-        .map_err(|error| BenchError::input(error.to_string()))?;
+    let contests: Contests = toml::from_str(CONTESTS).map_err(|error| BenchError::input(error.to_string()))?;
     pool(1)?.install(|| {
         let mut contestants = Vec::new();
         for problem in &contests.problem {
             let few = |all: usize, quick: usize| if settings.quick { quick } else { all };
-            let toughness = [problem.toughness.map_or(Toughness::None, |_| Toughness::Whole), Toughness::OfMesh];
-            let toughness = &toughness[..1 + usize::from(problem.toughness.is_some())];
             for mesh in &problem.meshes[..few(problem.meshes.len(), problem.quick)] {
-                for &toughness in toughness {
+                for &toughness in &problem.toughness {
                     contestants.push(ours(settings, problem, mesh, toughness, &library)?);
                 }
             }
             let (Some(elements), Ok(program)) = (&problem.elements, built) else { continue };
             for &h in &elements.sizes[..few(elements.sizes.len(), elements.quick)] {
-                for &toughness in toughness {
+                for &toughness in &problem.toughness {
                     contestants.push(theirs(settings, problem, (program, elements), (h, toughness), &library)?);
                 }
             }
@@ -131,8 +130,9 @@ pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
     })
 }
 
-/// What a crack costs, if there is one: Gc, or Gc over what it costs on the mesh.
-#[derive(Clone, Copy, PartialEq)]
+/// Gc, or Gc over what a crack costs on the mesh; none where nothing cracks.
+#[derive(Clone, Copy, PartialEq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 enum Toughness {
     None,
     Whole,
@@ -190,7 +190,7 @@ fn ours(
     }
     let [by, mark] = toughness.words();
     let id = format!("scoreboard/{}/fisura/{name}{mark}", problem.name);
-    let label = format!("{}: fisura, p = {degree}{words}{by}", problem.name);
+    let label = format!("fisura, p = {degree}{words}{by}");
     let record = BenchRecord::new(id, label, 1.0, "run").with("problem", &*problem.name).with("mesh", name);
     let library = Arc::clone(library);
     let (simulated, factor) = (scene.scene.clone(), scene.energy_factor);
@@ -209,7 +209,7 @@ fn theirs(
 ) -> Result<Contestant<'static>, BenchError> {
     let (case, scene) = load(settings, problem, &[])?;
     let [by, mark] = toughness.words();
-    let label = format!("{}: elements{by}", problem.name);
+    let label = format!("elements{by}");
     let id = format!("scoreboard/{}/elements/{h}{mark}", problem.name);
     let record =
         BenchRecord::new(id, label, 1.0, "run").with("problem", &*problem.name).with("mesh", format!("{h} mm"));
@@ -218,10 +218,10 @@ fn theirs(
     words.extend(elements.options.iter().cloned());
     words.extend(["--fraction", "1", "--interval-us", "0.25", "--tolerance", "1e-4"].map(String::from));
     let fracture = scene.scene.materials.values().find_map(|material| material.fracture.as_ref());
-    if let Some((fracture, gc)) = fracture.zip(problem.toughness) {
+    if let Some(fracture) = fracture {
         let slope = slope(fracture.model, 1, 2).filter(|_| toughness == Toughness::OfMesh).unwrap_or(0.0);
         let kappa = 1.0 + slope * 1e-3 * h / fracture.length_scale;
-        words.extend(["--toughness".into(), format!("{:.9}", gc / kappa)]);
+        words.extend(["--toughness".into(), format!("{:.9}", fracture.critical_energy_release_rate / kappa)]);
     }
     words.extend(["--h-mm".into(), h.to_string(), "--out".into()]);
     let (program, library) = (Program::of_words(words, LIMIT), Arc::clone(library));
@@ -297,4 +297,21 @@ fn errors(
     let all = AnswerError::relative(quantity, mean(|error| error.value), "elements extrapolated to h = 0");
     let all = AnswerError { uncertainty: mean(|error| error.uncertainty), ..all };
     if each.is_empty() { Err("no reference is known well".into()) } else { Ok([all].into_iter().chain(each).collect()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_list_is_read_and_a_quick_run_has_a_part_of_it() {
+        let contests: Contests = toml::from_str(CONTESTS).unwrap();
+        for problem in contests.problem {
+            assert!(problem.quick <= problem.meshes.len() && !problem.toughness.is_empty(), "{}", problem.name);
+            assert!(problem.elements.is_none_or(|e| e.quick <= e.sizes.len()), "{}", problem.name);
+            assert!(problem.parts_mm.iter().all(|ends| ends.is_empty() || ends.len() == problem.lengths.len() + 1));
+            let case = super::super::own_workspace().join("verification/cases/benchmarks").join(problem.case);
+            assert!(case.with_extension("toml").is_file(), "{}", problem.name);
+        }
+    }
 }
