@@ -1,6 +1,6 @@
 //! Error against time over the benchmarks, for this solver and for finite elements that are made for speed.
 
-use super::work_precision::{Chart, Line, fastest_to, lines};
+use super::work_precision::{Chart, fastest_to, lines};
 use super::{Exhibit, Records};
 use crate::number::plain;
 use crate::view::by_key;
