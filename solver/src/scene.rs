@@ -227,7 +227,8 @@ pub struct JIntegral {
     pub radius: f64,
     /// Where the tip is (m), if it does not move; absent: the tip of the crack.
     pub at: Option<[f64; 2]>,
-    /// Angle of the direction in which the crack goes, rad; absent: that of the end of the first crack.
+    /// Angle of the direction in which the crack goes, rad; absent: that of the crack that ends at `at`, or of
+    /// the end of the first crack.
     pub angle: Option<f64>,
 }
 
@@ -239,12 +240,14 @@ impl JIntegral {
         let last = first.and_then(|crack| crack.segments().last());
         let driven = first.filter(|crack| matches!(crack.kind, CrackKind::Driven(_)));
         let tip = self.at.or(driven.map(|crack| crack.points[0])).or(last.map(|[_, to]| to))?;
-        let axis = match (self.angle, last) {
+        let ends = body.cracks.iter().filter_map(|crack| crack.segments().last());
+        let beginnings = body.cracks.iter().filter_map(|crack| crack.segments().next()).map(|[from, to]| [to, from]);
+        let length = |[from, to]: [[f64; 2]; 2]| (to[0] - from[0]).hypot(to[1] - from[1]);
+        let ends_there = |crack: &[[f64; 2]; 2]| length([crack[1], tip]) < shape::ROUND_OFF * length(*crack);
+        let along = ends.chain(beginnings).find(ends_there).filter(|_| self.at.is_some()).or(last);
+        let axis = match (self.angle, along) {
             (Some(angle), _) => [angle.cos(), angle.sin()],
-            (None, Some([from, to])) => {
-                let length = (to[0] - from[0]).hypot(to[1] - from[1]);
-                [0, 1].map(|d| (to[d] - from[d]) / length)
-            }
+            (None, Some([from, to])) => [0, 1].map(|d| (to[d] - from[d]) / length([from, to])),
             (None, None) => return None,
         };
         Some((tip, axis))

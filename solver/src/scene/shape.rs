@@ -144,7 +144,7 @@ fn polygon_contains(points: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
 }
 
 /// Part of a segment beyond its ends that still belongs to it.
-const ROUND_OFF: f64 = 1e-9;
+pub(super) const ROUND_OFF: f64 = 1e-9;
 
 /// A straight line between two positions, m.
 pub(crate) type Segment = [[f64; 2]; 2];

@@ -34,7 +34,7 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
         let message = "only the cracks of a body in the total frame divide it into parts that are counted here";
         findings.error("output.fragments", message, "use frame = \"total\" and a fracture table, or contact.fragments");
     }
-    probes(scene, findings);
+    probes(scene, ground, findings);
     for (i, integral) in scene.output.j_integrals.iter().enumerate() {
         j_integral(i, integral, scene, ground, findings);
     }
@@ -117,8 +117,9 @@ fn counts_fragments(scene: &Scene) -> bool {
     scene.analysis.frame == Frame::Total && scene.bodies.iter().any(is_brittle)
 }
 
-fn probes(scene: &Scene, findings: &mut Findings) {
+fn probes(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
     let probes = &scene.output.probes;
+    let on_patch = |at| ground.patch.as_ref().is_none_or(|patch| patch.locate(at, None).is_ok());
     for (i, probe) in probes.iter().enumerate() {
         let key = format!("output.probe.{i}");
         if scene.analysis.frame == Frame::Updated {
@@ -127,7 +128,7 @@ fn probes(scene: &Scene, findings: &mut Findings) {
         }
         let [x, y] = probe.at;
         if findings.finite(format!("{key}.at"), &probe.at)
-            && !scene.bodies.iter().any(|body| body.shape.contains_within(probe.at, TOLERANCE))
+            && !(on_patch(probe.at) && scene.bodies.iter().any(|body| body.shape.contains_within(probe.at, TOLERANCE)))
         {
             findings.error(format!("{key}.at"), format!("({x}, {y}) m lies in no body"), "give a place in a body");
         }

@@ -11,7 +11,7 @@ const POINTS: usize = 4;
 /// are smaller than a span, and with fewer points a floor without friction brakes a body that slides on one.
 const RIGID_PARTS: usize = 8;
 /// Cosine of the angle between arcs that follow each other up to which there is a corner between them.
-const CORNER: f64 = 0.9;
+pub(crate) const CORNER: f64 = 0.9;
 /// Square of the distance of their ends, in lengths of an arc, from which on they are of different lines.
 const APART: f64 = 0.25;
 /// Divisions of an arc whose ends are looked at for the nearest place: a crushed corner bends its arcs far.

@@ -133,6 +133,7 @@ impl<'a> UnitParser<'a> {
         let mut result = self.power()?;
         let mut divided = false;
         loop {
+            let goes_on_with_a_digit = self.rest.starts_with(|c: char| c.is_ascii_digit());
             self.skip();
             if self.rest.is_empty() || self.rest.starts_with(')') {
                 return Ok(result);
@@ -142,6 +143,8 @@ impl<'a> UnitParser<'a> {
                 result = result.times(self.power()?, -1);
             } else if self.eat(&["*", "\u{b7}", "\u{22c5}"]) {
                 result = result.times(self.power()?, 1);
+            } else if goes_on_with_a_digit {
+                return self.fail("a power without \"^\"");
             } else if divided {
                 return self.fail("a blank after a quotient is ambiguous: product or divisor");
             } else {
