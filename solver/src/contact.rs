@@ -25,38 +25,32 @@
 //! lost: that is the contact loss of the ledger, half of it booked with the velocity the step begins with,
 //! half with the one it ends with. A rigid body does external work with its own velocity.
 
-mod area;
 pub mod boundary_functions;
-mod constraint;
 pub(crate) mod crack_faces;
 mod encounter;
-mod follow;
 pub(crate) mod gap_potential;
 pub mod impulse;
 pub(crate) mod motion;
 pub(crate) mod outline;
 pub(crate) mod rigid;
-mod state;
 pub(crate) mod surface;
-pub(crate) mod view;
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::checkpoint::{Archive, StateError};
 use crate::linear_algebra::extremes::{around, larger};
 use crate::linear_algebra::vectors::{dot, unit};
 use crate::scene::Scene;
 use crate::splines::patch::Patch;
-use boundary_functions::BoundaryFunctions;
-pub use constraint::ContactConstraint;
-use constraint::Impulse;
+pub use boundary_functions::{BodyView, ContactConstraint};
+use boundary_functions::{BoundaryFunctions, Impulse};
 use encounter::{Encounter, Sight, Squares};
 use motion::{AHEAD, MOST, TooFast};
 pub(crate) use rigid::RigidBody;
 use surface::Center;
 pub use surface::Surface;
-pub use view::BodyView;
 
 /// Cosine of the angle between outward normals above which boundaries do not face each other.
 const FACING: f64 = -0.5;
@@ -220,5 +214,16 @@ impl ContactSolver {
             None => None,
         };
         Some(ContactConstraint { gap: encounter.gap(), bodies: pair, square, position, normal, on_a, on_b })
+    }
+
+    /// Stores or takes up what steps change. Rigid bodies and constraints follow from time and bodies.
+    ///
+    /// # Errors
+    /// Bytes of another scene.
+    pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
+        let Self { friction: _, squares: _, reach: _, rigid: _, constraints: _, step, last, ledger } = self;
+        archive.value(step)?;
+        archive.value(last)?;
+        archive.value(ledger)
     }
 }

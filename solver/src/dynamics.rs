@@ -14,7 +14,6 @@ pub mod forcing;
 pub mod loads;
 pub(crate) mod mass;
 pub mod projection;
-pub(crate) mod reaction;
 pub mod statics;
 pub(crate) mod surface;
 pub mod time_plan;

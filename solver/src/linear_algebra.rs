@@ -12,7 +12,6 @@ pub mod extremes;
 pub mod incomplete_cholesky;
 pub(crate) mod interface;
 pub mod lane;
-pub(crate) mod preconditioned;
 pub mod preconditioner;
 pub mod stencil;
 mod terms;

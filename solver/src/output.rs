@@ -2,5 +2,4 @@
 
 pub mod inspection;
 pub mod picture;
-pub(crate) mod raster;
 pub mod span_grid;

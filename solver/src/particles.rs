@@ -5,6 +5,5 @@
 
 pub(crate) mod follower;
 pub mod lattice;
-pub(crate) mod neighbours;
 pub mod points;
 pub mod spans;

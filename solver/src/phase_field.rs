@@ -29,15 +29,12 @@
 mod advance;
 pub mod assembly;
 mod awake;
-mod bounds;
 pub mod fracture;
-mod increments;
 pub(crate) mod lag;
 pub(crate) mod levels;
 mod method;
 mod minimise;
 mod newton;
-mod state;
 mod toughness;
 
 use serde::{Deserialize, Serialize};
@@ -47,17 +44,15 @@ use crate::linear_algebra::conjugate_gradients::{Convergence, SolveFailure};
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::lane::{LANES, Lane};
-use crate::linear_algebra::preconditioned::ITERATION_LIMIT;
 use crate::linear_algebra::preconditioner::TOO_MANY;
 use crate::linear_algebra::stencil::Stencil;
 use crate::material::degradation::FractureModel;
 use crate::particles::lattice::Lattice;
-use crate::phase_field::assembly::{Integrand, Scaled, add_form};
+use crate::phase_field::assembly::{Increments, Integrand, Scaled, add_form, changed};
 use crate::scene::{Anisotropy, SolverSettings};
-use bounds::Bounds;
-use increments::{Increments, changed};
+use awake::Bounds;
 use lag::Lag;
-use method::Method;
+use method::{ITERATION_LIMIT, Method};
 
 /// Diagonal and right-hand side of control points without material, as a fraction of the largest right-hand
 /// side.
@@ -123,7 +118,8 @@ impl PhaseField {
         let mut load = add_forms(&mut matrix, lattice, &model, relative, 1.0);
         isolate_empty(&mut matrix, &mut load);
         if lattice.has_cut_spans() {
-            separate_small(&mut matrix);
+            // in a pointed tip just beyond a knot functions are alike to round-off
+            matrix.grid.indices().for_each(|at| matrix.set_diagonal(at, matrix.diagonal(at) * (1.0 + SEPARATE)));
         }
         let at_rest = model.threshold().map_or(0.0, |_| model.source() / model.reaction_per_energy());
         let assembled = vec![Lane::splat(at_rest); lattice.batches()];
@@ -353,14 +349,11 @@ impl PhaseField {
     /// Start of the next solve: linear extrapolation of the last two, `ahead` times the time between them.
     fn extrapolate(&mut self, ahead: f64) {
         let grid = self.matrix.grid;
-        for row in 0..grid.rows {
-            for range in self.matrix.active().row(row) {
-                let range = grid.index(range.start, row)..grid.index(range.end, row);
-                for (phase, previous) in self.phase[range.clone()].iter_mut().zip(&mut self.previous[range]) {
-                    let next = (1.0 + ahead) * *phase - ahead * *previous;
-                    *previous = *phase;
-                    *phase = next;
-                }
+        for used in self.matrix.active().within(grid, 0..grid.rows) {
+            for (phase, previous) in self.phase[used.clone()].iter_mut().zip(&mut self.previous[used]) {
+                let next = (1.0 + ahead) * *phase - ahead * *previous;
+                *previous = *phase;
+                *phase = next;
             }
         }
     }
@@ -408,11 +401,6 @@ fn isolate_empty(matrix: &mut Stencil, load: &mut [f64]) {
         matrix.set_diagonal(at, value);
         load[at] = value;
     }
-}
-
-/// Raises the diagonal a little: in a pointed tip just beyond a knot functions are alike to round-off.
-fn separate_small(matrix: &mut Stencil) {
-    matrix.grid.indices().for_each(|at| matrix.set_diagonal(at, matrix.diagonal(at) * (1.0 + SEPARATE)));
 }
 
 /// A failure with its error in the norm of the tolerance, of a matrix that may not be finite.

@@ -1,7 +1,6 @@
 //! A scene made ready to run: steps, samples, pictures, and the watch over its numbers.
 
 pub mod breakdown;
-mod causes;
 mod frame;
 pub mod state;
 mod watch;
@@ -16,8 +15,7 @@ use crate::dynamics::total_frame::TotalFrame;
 use crate::dynamics::updated_frame::UpdatedFrame;
 use crate::linear_algebra::lane::LANES;
 use crate::output::inspection::PointState;
-use crate::output::picture::Picture;
-use crate::output::raster::Raster;
+use crate::output::picture::{Picture, Raster};
 use crate::output::span_grid::SpanGrid;
 use crate::phase_field::PhaseFieldCounts;
 use crate::scene::{Scene, TimeStep};
@@ -88,7 +86,7 @@ impl Simulation {
     /// critical step is no number.
     pub fn new(scene: &Scene) -> Result<Self, Breakdown> {
         let tolerance = scene.solver.phase_field_tolerance;
-        let not_started = |failure| causes::not_started(scene.mesh.origin(), tolerance, failure);
+        let not_started = |failure| breakdown::not_started(scene.mesh.origin(), tolerance, failure);
         let mut frame = Bodies::new(scene).map_err(not_started)?;
         let critical = either!(&frame, body => body.critical_step());
         if critical.is_nan() {

@@ -4,9 +4,7 @@
 //! Calls [`linear_algebra`](crate::linear_algebra) and [`scene`](crate::scene).
 
 pub(crate) mod insertion;
-pub(crate) mod nearest_span;
 pub mod nurbs;
 pub mod patch;
-pub(crate) mod point_value;
 pub mod quadrature;
 pub mod spline;

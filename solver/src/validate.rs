@@ -8,29 +8,19 @@ mod body;
 mod conditions;
 mod contact;
 mod cracks;
-mod edge_conditions;
-mod findings;
 mod geometry;
 mod ground;
-mod held;
-mod look;
 mod material;
 mod mesh;
 mod output;
 mod points;
-mod refinement;
-mod resolution;
-mod seed;
-mod size;
-mod time;
 mod tractions;
 
 use crate::scene::error::{SceneError, SceneWarning};
 use crate::scene::{Frame, Scene};
 
-use findings::Findings;
-use ground::Ground;
-pub use size::expected_size;
+pub use analysis::expected_size;
+use ground::{Findings, Ground};
 
 /// Checks a scene; the warnings, if it can be modelled.
 ///
@@ -41,7 +31,7 @@ pub fn validate(scene: &Scene) -> Result<Vec<SceneWarning>, Vec<SceneError>> {
     let patch = mesh::check(&scene.mesh, &mut findings);
     let finest = Scene { mesh: scene.mesh.finest(), ..scene.clone() };
     let scene = if scene.mesh.halvings > 0 {
-        refinement::check(scene, &mut findings);
+        mesh::check_refinement(scene, &mut findings);
         &finest
     } else {
         scene
@@ -52,7 +42,7 @@ pub fn validate(scene: &Scene) -> Result<Vec<SceneWarning>, Vec<SceneError>> {
     material::check(scene, &mut findings);
     body::check(scene, &ground, &mut findings);
     contact::check(scene, &ground, &mut findings);
-    size::check(scene, &mut findings);
+    analysis::check_size(scene, &mut findings);
     // What a scene can say and the solver cannot do yet: a feature that arrives deletes its lines here.
     if scene.analysis.frame == Frame::Updated && scene.mesh.geometry.is_some() {
         let message = "a mesh with control_points or annulus in the updated frame is not supported yet";

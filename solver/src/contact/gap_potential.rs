@@ -16,8 +16,8 @@
 //! (`contact.stiffness`). The critical step counts κ. Where a body is thin its far face does not count
 //! ([`thin_parts`]).
 //!
-//! The boundary of a body may also meet itself, where [`own_pairs`] says so. Friction acts beside it
-//! ([`friction`]). Rigid bodies ([`rigid_outline`]) have an outline and no stiffness of their own; they work
+//! The boundary of a body may also meet itself, where [`OwnPairs`] says so. Friction acts beside it
+//! ([`friction`]). Rigid bodies ([`RigidOutline`]) have an outline and no stiffness of their own; they work
 //! on the others with their own velocity V, `−(F(n) · V(n) + F(n+1) · V(n+1)) dt/2` with the forces F on
 //! them.
 //!
@@ -30,8 +30,6 @@
 
 pub(crate) mod arc;
 pub(crate) mod friction;
-pub(crate) mod own_pairs;
-pub(crate) mod rigid_outline;
 pub(crate) mod thin_parts;
 mod winding;
 
@@ -39,16 +37,14 @@ use thiserror::Error;
 
 use super::ContactLedger;
 use super::impulse::ContactForce;
-use super::rigid::RigidPose;
+use super::rigid::{RigidOutline, RigidPose};
 use crate::checkpoint::{Archive, StateError};
 use crate::linear_algebra::extremes::{around, larger, smaller};
 use crate::linear_algebra::vectors::dot;
 use crate::splines::quadrature::Rule;
 use arc::{BoundaryPlace, Closest, Outline, nearest, rules};
 use friction::{ContactPoint, Friction};
-use own_pairs::OwnPairs;
-use rigid_outline::RigidOutline;
-use thin_parts::ThinParts;
+use thin_parts::{OwnPairs, ThinParts};
 
 /// Depth, in spans, from which on a boundary is not inside its own body, but on the far side of it.
 const FAR_SIDE: f64 = 0.5;

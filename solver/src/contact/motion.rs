@@ -4,8 +4,7 @@
 
 use thiserror::Error;
 
-use super::area::ShapeIntegrals;
-use super::outline::without_patch;
+use super::outline::{ShapeIntegrals, perimeter, without_patch};
 use super::surface::{Center, Surface};
 use crate::linear_algebra::extremes::{larger, largest, smaller};
 use crate::particles::spans::smallest_span;
@@ -78,8 +77,9 @@ impl<'a> Moving<'a> {
 /// Largest speed, m/s, with which the boundary of a body moves outwards as that turns and stretches about its
 /// centroid.
 fn outward_speed(mesh: &Mesh, body: &Body) -> f64 {
-    let surface = Surface::of_segments(mesh, body, SEGMENTS);
-    let center = ShapeIntegrals::new(&without_patch(&body.shape, mesh)).centroid;
+    let shape = without_patch(&body.shape, mesh);
+    let surface = Surface::with_spacing(mesh, body, perimeter(&shape) / SEGMENTS);
+    let center = ShapeIntegrals::new(&shape).centroid;
     let speeds = (0..surface.segments.len() as u32).flat_map(|segment| {
         let Center { normal, .. } = surface.center(segment);
         surface.ends(segment).map(|end| {

@@ -1,9 +1,12 @@
-//! Outlines of shapes: closed lines of short steps, the body to their left.
+//! Outlines of shapes: closed lines of short steps, the body to their left. Area, boundary length and
+//! centroid of a shape, by integrals along its boundary: so many Gauss points make those along a whole circle
+//! exact to round-off.
 
 use crate::linear_algebra::extremes::smaller;
+use crate::scene::edges::{BoundaryEdge, bounding_parts};
 use crate::scene::shape::polygon_edges;
-use crate::scene::{Body, Mesh, Shape};
-use crate::splines::quadrature::MAX_POINTS;
+use crate::scene::{Body, Layout, Mesh, Shape};
+use crate::splines::quadrature::{MAX_POINTS, Rule};
 
 /// Distance between the points of a body, m: that of the smallest span.
 pub(super) fn spacing(mesh: &Mesh, body: &Body) -> f64 {
@@ -27,18 +30,9 @@ pub(crate) fn without_patch(shape: &Shape, mesh: &Mesh) -> Shape {
     }
 }
 
-/// Length of all lines that [`rings`] gives, m.
+/// Length of all lines that [`rings`] gives, m; none of the patch, see [`without_patch`].
 pub(super) fn perimeter(shape: &Shape) -> f64 {
-    let circle = |radius: f64| std::f64::consts::TAU * radius;
-    match shape {
-        Shape::Rectangle { min, max } => 2.0 * ((max[0] - min[0]) + (max[1] - min[1])),
-        Shape::Disk { radius, .. } => circle(*radius),
-        Shape::Annulus { inner_radius, outer_radius, .. } => circle(*inner_radius) + circle(*outer_radius),
-        Shape::Polygon { points } => polygon_edges(points).map(|[a, b]| (b[0] - a[0]).hypot(b[1] - a[1])).sum(),
-        Shape::Patch => 0.0, // see without_patch
-        Shape::Union(shapes) => shapes.iter().map(perimeter).sum(),
-        Shape::Difference { of, minus } => perimeter(of) + minus.iter().map(perimeter).sum::<f64>(),
-    }
+    shape.edges().iter().map(BoundaryEdge::length).sum()
 }
 
 /// Closed lines that bound a shape, the body to their left, in steps of about `spacing`.
@@ -99,10 +93,43 @@ pub(super) fn bounds(shape: &Shape, [a, b]: [[f64; 2]; 2], tolerance: f64) -> bo
     on_boundary && shape.contains_within(beneath, tolerance)
 }
 
+/// Integrals over a shape.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ShapeIntegrals {
+    /// m².
+    pub area: f64,
+    /// Length of the boundary, m.
+    pub length: f64,
+    /// m.
+    pub centroid: [f64; 2],
+}
+
+impl ShapeIntegrals {
+    /// Those of a shape that is not the patch.
+    pub(crate) fn new(shape: &Shape) -> Self {
+        let (rule, parts) = (Rule::new(Layout::Gauss, MAX_POINTS), bounding_parts(shape));
+        let origin = parts.first().map_or([0.0; 2], |(edge, _)| edge.at(0.0).0);
+        let (mut area, mut length, mut moment) = (0.0, 0.0, [0.0; 2]);
+        for (edge, [from, to]) in &parts {
+            for (at, weight) in rule.points.iter().zip(&rule.weights) {
+                let (place, tangent) = edge.at(from + at * (to - from));
+                let arm = [0, 1].map(|d| place[d] - origin[d]);
+                let step = weight * (to - from);
+                let part = 0.5 * step * (arm[0] * tangent[1] - arm[1] * tangent[0]);
+                area += part;
+                length += step * tangent[0].hypot(tangent[1]);
+                (0..2).for_each(|d| moment[d] += 2.0 / 3.0 * part * arm[d]);
+            }
+        }
+        Self { area, length, centroid: [0, 1].map(|d| origin[d] + moment[d] / area) }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::example::rectangle;
+    use approx::assert_relative_eq;
 
     const SPACING: f64 = 2.5e-3;
 
@@ -154,5 +181,28 @@ mod tests {
             assert!((bounded(&disk) / length - 1.0).abs() < 0.01, "{radius}: {} m", bounded(&disk));
             assert!((bounded(&holed) - 0.8 - length).abs() < 0.01 * length, "{radius}: {} m", bounded(&holed));
         }
+    }
+
+    #[test]
+    fn parts_that_share_an_edge_are_counted_once() {
+        let rectangle = |min, max| Shape::Rectangle { min, max };
+        let angle = Shape::Union(vec![rectangle([3.0, 1.0], [5.0, 2.0]), rectangle([3.0, 1.0], [4.0, 3.0])]);
+        let ShapeIntegrals { area, length, centroid } = ShapeIntegrals::new(&angle);
+        assert_relative_eq!(area, 3.0, max_relative = 1e-12);
+        assert_relative_eq!(length, 8.0, max_relative = 1e-12);
+        assert_relative_eq!(centroid[0], 3.0 + 5.0 / 6.0, max_relative = 1e-12);
+        assert_relative_eq!(centroid[1], 1.0 + 5.0 / 6.0, max_relative = 1e-12);
+    }
+
+    #[test]
+    fn circles_are_exact() {
+        let hole = Shape::Disk { center: [0.5, 0.1], radius: 0.5 };
+        let shape =
+            Shape::Difference { of: Box::new(Shape::Disk { center: [0.0; 2], radius: 2.0 }), minus: vec![hole] };
+        let ShapeIntegrals { area, length, centroid } = ShapeIntegrals::new(&shape);
+        let pi = std::f64::consts::PI;
+        assert_relative_eq!(area, pi * 3.75, max_relative = 1e-12);
+        assert_relative_eq!(length, pi * 5.0, max_relative = 1e-12);
+        assert_relative_eq!(centroid[0], -0.125 / 3.75, max_relative = 1e-11);
     }
 }

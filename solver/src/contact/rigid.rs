@@ -1,7 +1,7 @@
-//! Rigid bodies: they move as prescribed, whatever they meet.
+//! Rigid bodies: they move as prescribed, whatever they meet, by impulses or by the potential of the gap.
 
-use super::area::ShapeIntegrals;
-use super::outline::without_patch;
+use super::gap_potential::arc::{Arc, Outline};
+use super::outline::{ShapeIntegrals, without_patch};
 use super::surface::Surface;
 use crate::scene::{Body, Mesh, TimeFactor};
 
@@ -105,6 +105,28 @@ impl RigidBody {
         self.pose = self.motion.at(time);
         let Self { surface, reference, pose, .. } = self;
         surface.place(|vertex| pose.place(reference[vertex]));
-        surface.expect_displacements(|position| pose.velocity_at(position).map(|v| dt * v));
+        surface.displacements = surface.vertices.iter().map(|x| pose.velocity_at(*x).map(|v| dt * v)).collect();
+    }
+}
+
+/// The boundary of a rigid body at t = 0 and its motion.
+#[derive(Debug, Clone)]
+pub(crate) struct RigidOutline {
+    arcs: Vec<Arc>,
+    motion: RigidMotion,
+}
+
+impl RigidOutline {
+    /// A body with these arcs at t = 0.
+    pub(crate) fn new(arcs: Vec<Arc>, motion: RigidMotion) -> Self {
+        Self { arcs, motion }
+    }
+
+    /// Where it is at a time (s), and how it moves then.
+    pub(crate) fn at(&self, time: f64) -> (Outline, RigidPose) {
+        let pose = self.motion.at(time);
+        let moved = |arc: &Arc| arc.moved(|x| pose.place(x), |arm| pose.turn(arm));
+        let arcs = if self.motion.rests() { self.arcs.clone() } else { self.arcs.iter().map(moved).collect() };
+        (Outline::new(arcs, f64::INFINITY), pose)
     }
 }

@@ -55,12 +55,8 @@ impl Surface {
         Self::with_spacing(mesh, body, spacing(mesh, body))
     }
 
-    /// The boundary of `body` at t = 0, in about so many segments.
-    pub(super) fn of_segments(mesh: &Mesh, body: &Body, count: f64) -> Self {
-        Self::with_spacing(mesh, body, perimeter(&without_patch(&body.shape, mesh)) / count)
-    }
-
-    fn with_spacing(mesh: &Mesh, body: &Body, spacing: f64) -> Self {
+    /// The boundary of `body` at t = 0, in segments of about this length, m.
+    pub(super) fn with_spacing(mesh: &Mesh, body: &Body, spacing: f64) -> Self {
         let shape = without_patch(&body.shape, mesh);
         let mut surface = Self::default();
         for ring in rings(&shape, spacing) {
@@ -117,11 +113,6 @@ impl Surface {
     /// Moves every vertex to the place of a map, m.
     pub fn place(&mut self, place: impl Fn(usize) -> [f64; 2]) {
         self.vertices.iter_mut().enumerate().for_each(|(index, vertex)| *vertex = place(index));
-    }
-
-    /// Takes the displacements of the vertices from a map of their positions, m.
-    pub(crate) fn expect_displacements(&mut self, displacement: impl Fn([f64; 2]) -> [f64; 2]) {
-        self.displacements = self.vertices.iter().map(|vertex| displacement(*vertex)).collect();
     }
 
     /// Stores or takes up what steps change.

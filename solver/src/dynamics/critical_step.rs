@@ -98,6 +98,6 @@ fn pseudo_random(n: usize) -> Vec<f64> {
     (0..n).map(|_| next()).collect()
 }
 
-pub(in crate::dynamics) fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

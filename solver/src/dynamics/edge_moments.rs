@@ -54,41 +54,41 @@ type Direction = fn([f64; 2]) -> [f64; 2];
 
 /// A moment of the motion of an edge, and its multiplier.
 #[derive(Debug, Clone)]
-pub(in crate::dynamics) struct Moment {
+pub(super) struct Moment {
     /// Number of its condition.
-    pub(in crate::dynamics) condition: usize,
+    pub(super) condition: usize,
     /// Control point and component, and its share, m.
-    pub(in crate::dynamics) shares: Vec<(usize, usize, f64)>,
+    pub(super) shares: Vec<(usize, usize, f64)>,
     /// Shares of the components in all: those of a translation, m.
-    pub(in crate::dynamics) total: [f64; 2],
+    pub(super) total: [f64; 2],
 }
 
 /// Moments, and the multipliers that prescribe them on a body with a lumped mass.
 #[derive(Debug, Clone)]
-pub(in crate::dynamics) struct Multipliers {
-    pub(in crate::dynamics) moments: Vec<Moment>,
+pub(super) struct Multipliers {
+    pub(super) moments: Vec<Moment>,
     /// Inverse mass of the shares of every moment, m/kg; zero where a side of the mesh prescribes.
-    pub(in crate::dynamics) inverse: Vec<Vec<f64>>,
+    pub(super) inverse: Vec<Vec<f64>>,
     factor: LowerFactor,
 }
 
 impl Multipliers {
     /// A part of the compliance of every multiplier, its `softness`, is added to it. `None` if the moments
     /// are not independent.
-    pub(in crate::dynamics) fn new(moments: Vec<Moment>, inverse: Vec<Vec<f64>>, softness: f64) -> Option<Self> {
+    pub(super) fn new(moments: Vec<Moment>, inverse: Vec<Vec<f64>>, softness: f64) -> Option<Self> {
         let factor = compliance(&moments, &inverse, softness).and_then(|lower| LowerFactor::new(&lower, None))?;
         Some(Self { moments, inverse, factor })
     }
 
     /// λ of an excess of every moment.
-    pub(in crate::dynamics) fn of_excess(&self, excess: impl Fn(&Moment) -> f64) -> Vec<f64> {
+    pub(super) fn of_excess(&self, excess: impl Fn(&Moment) -> f64) -> Vec<f64> {
         let mut multipliers: Vec<f64> = self.moments.iter().map(excess).collect();
         self.factor.solve(&mut multipliers);
         multipliers
     }
 
     /// `field ← field − M⁻¹ Bᵀ λ`.
-    pub(in crate::dynamics) fn yield_to(&self, multipliers: &[f64], field: &mut VectorField) {
+    pub(super) fn yield_to(&self, multipliers: &[f64], field: &mut VectorField) {
         for ((moment, inverse), multiplier) in self.moments.iter().zip(&self.inverse).zip(multipliers) {
             for (&(at, component, share), inverse) in moment.shares.iter().zip(inverse) {
                 field[component][at] -= multiplier * share * inverse;
@@ -97,13 +97,13 @@ impl Multipliers {
     }
 
     /// Takes from accelerations or displacements what the conditions do not allow.
-    pub(in crate::dynamics) fn project(&self, field: &mut VectorField) {
+    pub(super) fn project(&self, field: &mut VectorField) {
         let multipliers = self.of_excess(|moment| moment.of(field));
         self.yield_to(&multipliers, field);
     }
 
     /// Takes the part that the multipliers carry from forces, N/m.
-    pub(in crate::dynamics) fn project_forces(&self, forces: &mut VectorField) {
+    pub(super) fn project_forces(&self, forces: &mut VectorField) {
         let yielded = |(moment, inverse): (&Moment, &Vec<f64>)| {
             let shares = moment.shares.iter().zip(inverse);
             shares.map(|(&(at, component, share), inverse)| share * inverse * forces[component][at]).sum()
@@ -119,7 +119,7 @@ impl Multipliers {
 
     /// A moment that nearly follows from the others: what is left of its own compliance beside them,
     /// `1/(S⁻¹)_rr` of `S_rr` for `S = B M⁻¹ Bᵀ`, is less than `least`.
-    pub(in crate::dynamics) fn dependent(&self, least: f64) -> Option<&Moment> {
+    pub(super) fn dependent(&self, least: f64) -> Option<&Moment> {
         (0..self.moments.len())
             .map(|row| {
                 let mut unit = vec![0.0; self.moments.len()];
@@ -135,27 +135,27 @@ impl Multipliers {
 
 impl Moment {
     /// Its value for a field.
-    pub(in crate::dynamics) fn of(&self, field: &VectorField) -> f64 {
+    pub(super) fn of(&self, field: &VectorField) -> f64 {
         self.shares.iter().map(|&(at, component, share)| share * field[component][at]).sum()
     }
 
     /// Whether its multiplier can move something: `inverse` (m/kg) is that of its shares, zero where
     /// something else prescribes, `of` the inverse mass of any control point.
-    pub(in crate::dynamics) fn yields(&self, inverse: &[f64], of: impl Fn(usize) -> f64) -> bool {
+    pub(super) fn yields(&self, inverse: &[f64], of: impl Fn(usize) -> f64) -> bool {
         let yielding: f64 = self.shares.iter().zip(inverse).map(|((.., share), m)| share * share * m).sum();
         let all: f64 = self.shares.iter().map(|&(at, _, share)| share * share * of(at)).sum();
         yielding > YIELDS * all
     }
 
     /// Its value for a translation.
-    pub(in crate::dynamics) fn translated(&self, value: [f64; 2]) -> f64 {
+    pub(super) fn translated(&self, value: [f64; 2]) -> f64 {
         self.total[0] * value[0] + self.total[1] * value[1]
     }
 }
 
 /// The multipliers of an edge.
 #[derive(Clone, Copy)]
-pub(in crate::dynamics) enum EdgeMultipliers<'a> {
+pub(super) enum EdgeMultipliers<'a> {
     /// Splines of the distance along it.
     OfParts(&'a SplineSpace),
     /// The functions in a direction of the mesh of control points on a grid, where their integral along the
@@ -193,7 +193,7 @@ impl EdgeMultipliers<'_> {
 ///
 /// # Errors
 /// The position (m) of a point that is not on the edge.
-pub(in crate::dynamics) fn moments_of(
+pub(super) fn moments_of(
     condition: usize,
     hold: Hold,
     multipliers: EdgeMultipliers<'_>,
@@ -233,7 +233,7 @@ pub(in crate::dynamics) fn moments_of(
 /// The functions of control points on a grid along an edge through points with the control points and values
 /// of the functions there; `None` if it does not lie in a direction of the mesh, is short, or if another
 /// condition fixes a component of one of them.
-pub(in crate::dynamics) fn along_mesh(
+pub(super) fn along_mesh(
     patch: &Patch,
     grid: ControlGrid,
     points: &[(SurfacePoint, Vec<(usize, f64)>)],
@@ -258,12 +258,7 @@ pub(in crate::dynamics) fn along_mesh(
 /// Whether an edge is a whole side of a body along the mesh, and no other edge of which the same component is
 /// prescribed comes within the reach of its functions, but for one beside it. All functions along a part of a
 /// side would hold more of it; along two edges that meet they would not be independent.
-pub(in crate::dynamics) fn is_whole_side(
-    patch: &Patch,
-    body: &Body,
-    conditions: &[EdgeCondition],
-    number: usize,
-) -> bool {
+pub(super) fn is_whole_side(patch: &Patch, body: &Body, conditions: &[EdgeCondition], number: usize) -> bool {
     let own = &conditions[number];
     let Some(across) = across(body, own) else { return false };
     let [a, b] = edge_ends(body, &own.edge);
@@ -307,7 +302,7 @@ fn across(body: &Body, condition: &EdgeCondition) -> Option<usize> {
 }
 
 /// Splines along an edge for multipliers; linear on an edge that is shorter than a part.
-pub(in crate::dynamics) fn multiplier_space(patch: &Patch, parts: &[Vec<SurfacePoint>]) -> SplineSpace {
+pub(super) fn multiplier_space(patch: &Patch, parts: &[Vec<SurfacePoint>]) -> SplineSpace {
     let degree = patch.spaces.iter().map(|space| space.degree()).max().unwrap_or(1);
     let length = |part: &Vec<SurfacePoint>| part.iter().map(|point| point.length).sum::<f64>();
     let size = |part: &Vec<SurfacePoint>| {

@@ -1,6 +1,6 @@
 //! External loads: tractions carried by surface points, `f_I = factor(time) Σ_s l_s t N_I(x_s)` with the
 //! length l of a point and the traction t (E 18). Those that move are in
-//! [`updated_frame::tractions`](super::updated_frame).
+//! [`updated_frame::loads`](super::updated_frame).
 //!
 //! Nothing of a traction may be lost on the way to the control points: [`Balance`] holds every load to the
 //! force and moment of its edge when it is made.
@@ -13,9 +13,9 @@ use crate::dynamics::surface::{SurfacePoint, edge_ends, surface_points};
 use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::vectors::cofactor;
+use crate::particles::follower::nearest_span;
 use crate::particles::lattice::Lattice;
 use crate::scene::{Body, Edge, Kinematics, Load, Shape, Side, TimeFactor, Traction};
-use crate::splines::nearest_span::nearest_span;
 use crate::splines::nurbs::locate::Location;
 use crate::splines::patch::{BoundaryPoint, Patch, PointFunctions};
 use crate::splines::quadrature::Rule;

@@ -88,8 +88,16 @@ impl MassMatrix {
 
     /// Forces become accelerations: `M⁻¹ f`, zero where held (consistent mass) or without mass.
     pub(crate) fn divide(&self, forces: &mut VectorField) {
-        for component in 0..2 {
-            self.divide_component(component, &mut forces[component]);
+        for (component, force) in forces.iter_mut().enumerate() {
+            match &self.kind {
+                MassKind::Lumped { inverse } => {
+                    force.par_iter_mut().zip(inverse).with_min_len(CHUNK).for_each(|(f, inverse)| *f *= inverse);
+                }
+                MassKind::Consistent(consistent) => {
+                    let right = force.to_vec();
+                    consistent.factors[component % consistent.factors.len()].solve(&right, force);
+                }
+            }
         }
     }
 
@@ -100,19 +108,6 @@ impl MassMatrix {
             in_use.for_each_part(grid, [force], |used, [force]| {
                 force.iter_mut().zip(&inverse[used]).for_each(|(f, inverse)| *f *= inverse);
             });
-        }
-    }
-
-    /// [`Self::divide`] for one component.
-    pub(crate) fn divide_component(&self, component: usize, force: &mut [f64]) {
-        match &self.kind {
-            MassKind::Lumped { inverse } => {
-                force.par_iter_mut().zip(inverse).with_min_len(CHUNK).for_each(|(f, inverse)| *f *= inverse);
-            }
-            MassKind::Consistent(consistent) => {
-                let right = force.to_vec();
-                consistent.factors[component % consistent.factors.len()].solve(&right, force);
-            }
         }
     }
 

@@ -13,19 +13,12 @@ pub mod domain;
 mod edge_conditions;
 mod equilibrium;
 mod forced;
-mod fragments;
-mod held_points;
 mod inspect;
 mod j_integral;
 mod levels;
 mod observe;
-mod paint;
 mod prescribed;
-mod probe;
-mod rotation;
-mod state;
 pub(crate) mod stiffness;
-mod tangent;
 
 use crate::dynamics::constraints::Constraints;
 use crate::dynamics::energy::Ledger;
@@ -41,13 +34,12 @@ use crate::scene::{Kinematics, Shape};
 use crate::splines::patch::Patch;
 use crate::transfer::sweep::StripForces;
 
-use crate::transfer::elastic_forces::elastic_forces;
+use crate::transfer::finite::elastic_forces;
 use boundary::MaterialBoundary;
-use domain::Domain;
+use domain::{Domain, ProbePlace};
 use edge_conditions::EdgeConditions;
 use forced::LatticeForcing;
 use prescribed::Reactions;
-use probe::ProbePlace;
 
 /// From the velocity at hand to that of the step to come, of a step: prescribed velocities are those in the
 /// middle of steps.

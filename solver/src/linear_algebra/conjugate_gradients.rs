@@ -31,7 +31,6 @@ use crate::linear_algebra::interface::{Interface, fold_all, spread_all};
 use crate::linear_algebra::lane::{Scalar, Vectorised, add_product, dispatch};
 use crate::linear_algebra::preconditioner::Preconditioner;
 use crate::linear_algebra::stencil::Stencil;
-use crate::linear_algebra::terms::Coefficients;
 
 /// Ratio of two decreases from which on iterations count as stagnating.
 const STAGNATING: f64 = 0.999;
@@ -131,48 +130,38 @@ pub(crate) fn solve_on_grids(
     tolerance: f64,
     limit: usize,
 ) -> Result<Convergence, SolveFailure> {
-    let single = |grid| Iterated::new(grid, |workspace| (&mut workspace.single, &mut workspace.product));
-    let mut iterated: Vec<_> = grids.iter_mut().map(single).collect();
-    let spent = match (Solving { grids: &mut iterated, interfaces, tolerance, limit }).solve() {
+    let mut system = Solving { grids, interfaces, tolerance, limit };
+    let spent = match system.solve::<f32>() {
         Ok(found) if found.iterations < TRUSTED => return Ok(found),
         Err(SolveFailure::NotFinite) => return Err(SolveFailure::NotFinite),
         found => found.map_or(0, |found| found.iterations),
     };
-    let double = |grid| {
-        Iterated::new(grid, |ConjugateGradients { single, double, product }| {
-            (&mut **double.get_or_insert_with(|| Box::new(Workspace::new(&single.matrix))), product)
-        })
-    };
-    let mut iterated: Vec<_> = grids.iter_mut().map(double).collect();
-    let found = Solving { grids: &mut iterated, interfaces, tolerance, limit }.solve()?;
+    let found = system.solve::<f64>()?;
     Ok(Convergence { iterations: spent + found.iterations, ..found })
 }
 
-/// The part of a system on one grid with the vectors of a precision.
-struct Iterated<'a, T> {
-    work: &'a mut Workspace<T>,
-    product: &'a mut Vec<f64>,
-    matrix: &'a Stencil,
-    preconditioner: &'a Preconditioner,
-    own: &'a ActiveColumns,
-    b: &'a [f64],
-    x: &'a mut [f64],
+/// A precision of iterations.
+trait Precision: Scalar {
+    /// Matrix and vectors of this precision, and room for `A x`.
+    fn vectors(room: &mut ConjugateGradients) -> (&mut Workspace<Self>, &mut Vec<f64>);
 }
 
-impl<'a, T> Iterated<'a, T> {
-    fn new<'b: 'a>(
-        grid: &'a mut OnGrid<'b>,
-        vectors: impl FnOnce(&'a mut ConjugateGradients) -> (&'a mut Workspace<T>, &'a mut Vec<f64>),
-    ) -> Self {
-        let OnGrid { workspace, matrix, preconditioner, own, b, x } = grid;
-        let (work, product) = vectors(workspace);
-        Self { work, product, matrix, preconditioner, own, b, x }
+impl Precision for f32 {
+    fn vectors(room: &mut ConjugateGradients) -> (&mut Workspace<Self>, &mut Vec<f64>) {
+        (&mut room.single, &mut room.product)
+    }
+}
+
+impl Precision for f64 {
+    fn vectors(room: &mut ConjugateGradients) -> (&mut Workspace<Self>, &mut Vec<f64>) {
+        let ConjugateGradients { single, double, product } = room;
+        (&mut **double.get_or_insert_with(|| Box::new(Workspace::new(&single.matrix))), product)
     }
 }
 
 /// What is to be solved, and how well.
-struct Solving<'a, 'b, T> {
-    grids: &'a mut [Iterated<'b, T>],
+struct Solving<'a, 'b> {
+    grids: &'a mut [OnGrid<'b>],
     interfaces: &'a [Interface],
     tolerance: f64,
     limit: usize,
@@ -189,7 +178,7 @@ struct Workspace<T> {
     image: Vec<T>,
 }
 
-impl<T: Scalar + Coefficients<T>> Workspace<T> {
+impl<T: Scalar> Workspace<T> {
     fn new<S: Scalar>(matrix: &Stencil<S>) -> Self {
         let zeros = || vec![T::ZERO; matrix.grid.len()];
         Self {
@@ -254,19 +243,20 @@ impl<T: Scalar + Coefficients<T>> Workspace<T> {
     }
 }
 
-impl<T: Scalar + Coefficients<T>> Solving<'_, '_, T> {
-    fn solve(&mut self) -> Result<Convergence, SolveFailure> {
+impl Solving<'_, '_> {
+    fn solve<T: Precision>(&mut self) -> Result<Convergence, SolveFailure> {
         let unit = self.grids.iter().map(|grid| grid.preconditioner.unit()).fold(f64::INFINITY, smaller);
-        self.grids.iter_mut().for_each(|grid| grid.work.take_part(grid.matrix));
+        self.grids.iter_mut().for_each(|grid| T::vectors(grid.workspace).0.take_part(grid.matrix));
         let mut iterations = 0;
         loop {
-            for Iterated { work, product, matrix, b, x, .. } in &mut *self.grids {
+            for OnGrid { workspace, matrix, b, x, .. } in &mut *self.grids {
+                let (work, product) = T::vectors(workspace);
                 matrix.residual(unit, b, x, product, &mut work.residual, &mut work.matrix);
                 matrix.active().clear_inside(matrix.grid, &mut work.correction);
             }
-            self.fold(|work| &mut work.residual);
-            let corrected = self.correct(unit, &mut iterations);
-            self.grids.iter_mut().for_each(|grid| grid.work.add_to(grid.x));
+            self.fold::<T>(|work| &mut work.residual);
+            let corrected = self.correct::<T>(unit, &mut iterations);
+            self.grids.iter_mut().for_each(|grid| T::vectors(grid.workspace).0.add_to(grid.x));
             if let Some(error) = corrected? {
                 return Ok(Convergence { iterations, error });
             }
@@ -274,17 +264,18 @@ impl<T: Scalar + Coefficients<T>> Solving<'_, '_, T> {
     }
 
     /// Moves the values of a vector at the interfaces to the coarser grids.
-    fn fold(&mut self, vector: impl Fn(&mut Workspace<T>) -> &mut Vec<T>) {
-        let mut fields: Vec<_> = self.grids.iter_mut().map(|grid| &mut vector(grid.work)[..]).collect();
+    fn fold<T: Precision>(&mut self, vector: impl Fn(&mut Workspace<T>) -> &mut Vec<T>) {
+        let mut fields: Vec<_> =
+            self.grids.iter_mut().map(|grid| &mut vector(T::vectors(grid.workspace).0)[..]).collect();
         fold_all(self.interfaces, &mut fields);
     }
 
     /// Finds a correction, and counts its iterations; returns the error that is left, or none if the
     /// tolerance is below what a correction is good for.
-    fn correct(&mut self, unit: f64, iterations: &mut usize) -> Result<Option<f64>, SolveFailure> {
+    fn correct<T: Precision>(&mut self, unit: f64, iterations: &mut usize) -> Result<Option<f64>, SolveFailure> {
         let &mut Self { tolerance, limit, .. } = self;
         let judges_starts = self.grids.iter().all(|grid| grid.preconditioner.judges_starts());
-        let mut rho = self.precondition(unit);
+        let mut rho = self.precondition::<T>(unit);
         let mut remaining = Remaining::from_start(rho / unit);
         let enough = DIGITS * remaining.estimate.sqrt();
         let mut beta = 0.0;
@@ -301,7 +292,7 @@ impl<T: Scalar + Coefficients<T>> Solving<'_, '_, T> {
             } else if error <= enough {
                 return Ok(None);
             } else if remaining.last.is_some() {
-                let previous = std::mem::replace(&mut rho, self.precondition(unit));
+                let previous = std::mem::replace(&mut rho, self.precondition::<T>(unit));
                 beta = rho / previous;
             }
             let curvature = self.turn(T::of(beta));
@@ -309,16 +300,16 @@ impl<T: Scalar + Coefficients<T>> Solving<'_, '_, T> {
                 return Err(SolveFailure::NotPositiveDefinite);
             }
             let alpha = rho / curvature;
-            self.grids.iter_mut().for_each(|grid| grid.work.advance(T::of(alpha)));
+            self.grids.iter_mut().for_each(|grid| T::vectors(grid.workspace).0.advance(T::of(alpha)));
             remaining.learn(alpha * rho / unit);
             *iterations += 1;
         }
     }
 
     /// `z = M⁻¹ r`; returns `r·z`.
-    fn precondition(&mut self, unit: f64) -> f64 {
-        let of_grid = |grid: &mut Iterated<T>| {
-            let Workspace { residual, preconditioned, .. } = &mut *grid.work;
+    fn precondition<T: Precision>(&mut self, unit: f64) -> f64 {
+        let of_grid = |grid: &mut OnGrid| {
+            let Workspace { residual, preconditioned, .. } = T::vectors(grid.workspace).0;
             let product = grid.preconditioner.apply(grid.own, residual, preconditioned);
             let ratio = grid.preconditioner.unit() / unit; // a power of two
             if ratio != 1.0 {
@@ -330,14 +321,14 @@ impl<T: Scalar + Coefficients<T>> Solving<'_, '_, T> {
     }
 
     /// `d ← z + beta d` and its image `A d`; returns `d·A d`.
-    fn turn(&mut self, beta: T) -> f64 {
-        self.grids.iter_mut().for_each(|grid| grid.work.turn(beta));
-        let mut directions: Vec<_> = self.grids.iter_mut().map(|grid| &mut grid.work.direction[..]).collect();
+    fn turn<T: Precision>(&mut self, beta: T) -> f64 {
+        self.grids.iter_mut().for_each(|grid| T::vectors(grid.workspace).0.turn(beta));
+        let mut directions: Vec<_> =
+            self.grids.iter_mut().map(|grid| &mut T::vectors(grid.workspace).0.direction[..]).collect();
         spread_all(self.interfaces, &mut directions);
         let curvature = |Workspace { matrix, direction, image, .. }: &mut Workspace<T>| matrix.apply(direction, image);
-        let curvatures = self.grids.iter_mut().map(|grid| curvature(grid.work));
-        let sum = curvatures.sum();
-        self.fold(|work| &mut work.image);
+        let sum = self.grids.iter_mut().map(|grid| curvature(T::vectors(grid.workspace).0)).sum();
+        self.fold::<T>(|work| &mut work.image);
         sum
     }
 }

@@ -74,9 +74,12 @@ impl<T: Scalar> Lane<T> {
         lane
     }
 
-    /// Reads eight neighbours of single precision.
+    /// Reads eight neighbours of any precision.
     #[inline(always)]
-    pub(crate) fn load_single(values: &[f32], at: usize) -> Self {
+    pub(crate) fn load_from<C: Copy>(values: &[C], at: usize) -> Self
+    where
+        T: From<C>,
+    {
         let mut lane = Self::ZERO;
         for (lane, value) in lane.0.iter_mut().zip(&values[at..at + LANES]) {
             *lane = T::from(*value);

@@ -14,7 +14,7 @@ use crate::linear_algebra::active_columns::ActiveColumns;
 use crate::linear_algebra::control_grid::{CHUNK_ROWS, ControlGrid};
 use crate::linear_algebra::extremes::largest;
 use crate::linear_algebra::lane::{LANES, Lane, Scalar, Vectorised, dispatch};
-use crate::linear_algebra::terms::{Coefficients, Terms};
+use crate::linear_algebra::terms::Terms;
 
 /// Couplings that are worth waking another thread for: some ten microseconds.
 const LEAST_WORK: usize = 50_000;
@@ -149,7 +149,7 @@ impl<T: Scalar> Stencil<T> {
     }
 }
 
-impl<T: Scalar + Coefficients<T>> Stencil<T> {
+impl<T: Scalar> Stencil<T> {
     /// Couplings of the half stencil; the first is the diagonal.
     pub fn offsets(&self) -> &[Offset] {
         &self.offsets
@@ -236,7 +236,7 @@ struct ApplyRows<'a, T> {
     first_row: usize,
 }
 
-impl<T: Scalar + Coefficients<T>> ApplyRows<'_, T> {
+impl<T: Scalar> ApplyRows<'_, T> {
     /// The couplings of a row with itself and with those after and before it.
     #[inline(always)]
     fn find_terms(&self, row: usize, terms: &mut Terms) {
@@ -258,7 +258,7 @@ impl<T: Scalar + Coefficients<T>> ApplyRows<'_, T> {
     }
 }
 
-impl<T: Scalar + Coefficients<T>> Vectorised for ApplyRows<'_, T> {
+impl<T: Scalar> Vectorised for ApplyRows<'_, T> {
     type Output = f64;
 
     #[inline(always)]

@@ -5,26 +5,6 @@
 
 use super::lane::{LANES, Lane, Scalar, each};
 
-/// Coefficients that are read as numbers of a kind.
-pub trait Coefficients<T>: Copy {
-    /// Eight neighbours.
-    fn lane(values: &[Self], at: usize) -> Lane<T>;
-}
-
-impl<T: Scalar> Coefficients<T> for f32 {
-    #[inline(always)]
-    fn lane(values: &[Self], at: usize) -> Lane<T> {
-        Lane::load_single(values, at)
-    }
-}
-
-impl Coefficients<f64> for f64 {
-    #[inline(always)]
-    fn lane(values: &[Self], at: usize) -> Lane<f64> {
-        Lane::load(values, at)
-    }
-}
-
 /// Most couplings of a control point: those of quartic splines and their penalty.
 const MOST: usize = 121;
 /// Couplings that go along a row together.
@@ -67,7 +47,7 @@ impl Terms {
     /// values with the place of the first. All fields have room for reading to the end of a batch, and sums
     /// behind the last become zero.
     #[inline(always)]
-    pub(super) fn add<const FMA: bool, const MINUS: bool, T: Scalar, C: Coefficients<T>>(
+    pub(super) fn add<const FMA: bool, const MINUS: bool, T: Scalar + From<C>, C: Copy>(
         &self,
         sums: &mut [T],
         used: usize,
@@ -94,7 +74,7 @@ impl Terms {
 
 /// N couplings along a row.
 #[inline(always)]
-fn add_some<const FMA: bool, const MINUS: bool, const N: usize, T: Scalar, C: Coefficients<T>>(
+fn add_some<const FMA: bool, const MINUS: bool, const N: usize, T: Scalar + From<C>, C: Copy>(
     sums: &mut [T],
     used: usize,
     parts: [(&[C], &[T]); N],
@@ -116,14 +96,14 @@ fn add_some<const FMA: bool, const MINUS: bool, const N: usize, T: Scalar, C: Co
 }
 
 #[inline(always)]
-fn add_batch<const FMA: bool, const MINUS: bool, const N: usize, T: Scalar, C: Coefficients<T>>(
+fn add_batch<const FMA: bool, const MINUS: bool, const N: usize, T: Scalar + From<C>, C: Copy>(
     sums: &[T],
     parts: &[(&[C], &[T]); N],
     at: usize,
 ) -> Lane<T> {
     let mut sum = Lane::load(sums, at);
     for (coefficients, values) in parts {
-        let mut factor = C::lane(coefficients, at);
+        let mut factor = Lane::<T>::load_from(coefficients, at);
         if MINUS {
             factor = factor.map(|factor| -factor);
         }

@@ -98,7 +98,7 @@ pub(crate) enum Distortion {
 impl Distortion {
     /// Of a displacement gradient: the angle, or the strain if it is larger and `strains` count.
     pub(crate) fn of(gradient: &Gradient, strains: bool) -> Self {
-        let (angle, strain) = (rotation(gradient).abs(), largest_principal(symmetric(*gradient)));
+        let (angle, strain) = (rotation(gradient).abs(), spectral_radius(symmetric(*gradient)));
         if strains && strain > angle { Self::Strained(strain) } else { Self::Turned(angle) }
     }
 
@@ -119,9 +119,9 @@ impl std::fmt::Display for Distortion {
     }
 }
 
-/// Magnitude of the largest principal value of a symmetric tensor `[xx, yy, xy]`.
+/// Spectral radius, the magnitude of the largest principal value, of a symmetric tensor `[xx, yy, xy]`.
 #[inline(always)]
-pub(crate) fn largest_principal([xx, yy, xy]: [f64; 3]) -> f64 {
+pub(crate) fn spectral_radius([xx, yy, xy]: [f64; 3]) -> f64 {
     0.5 * (xx + yy).abs() + (0.25 * (xx - yy) * (xx - yy) + xy * xy).sqrt()
 }
 

@@ -9,9 +9,8 @@ use super::points::{Cells, OutsidePatch};
 use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
 use crate::linear_algebra::extremes::larger;
 use crate::material::hencky::Gradient;
-use crate::splines::nearest_span::nearest_span;
 use crate::splines::patch::Patch;
-use crate::splines::spline::ShapeFunctions;
+use crate::splines::spline::{ShapeFunctions, SplineSpace};
 
 /// Least mass of a control point that a load, a condition or contact takes hold of, as a part of
 /// `ρ A N^(1 + 1/p)` with the value N of its function there and the area A of a span. The material within a
@@ -115,4 +114,33 @@ impl Follower {
         };
         [along(0), along(1)]
     }
+}
+
+/// The span that is nearest to a position (m) among its own and its eight neighbours, of those that `carries`
+/// says can stand for it; its own if it can.
+pub(crate) fn nearest_span(
+    spaces: &[SplineSpace; 2],
+    position: [f64; 2],
+    carries: impl Fn([usize; 2]) -> bool,
+) -> Option<[usize; 2]> {
+    let home = [0, 1].map(|d| clamped_span(&spaces[d], position[d]));
+    if carries(home) {
+        return Some(home);
+    }
+    let near = |d: usize| home[d].saturating_sub(1)..(home[d] + 2).min(spaces[d].spans().len());
+    let distance = |span: &[usize; 2]| {
+        let beyond = |d: usize| {
+            let s = &spaces[d].spans()[span[d]];
+            (s.left - position[d]).max(position[d] - s.right).max(0.0)
+        };
+        beyond(0).hypot(beyond(1))
+    };
+    let spans = near(1).flat_map(|j| near(0).map(move |i| [i, j]));
+    spans.filter(|span| carries(*span)).min_by(|a, b| distance(a).total_cmp(&distance(b)))
+}
+
+/// The span of `x`, or the end span nearest to it.
+fn clamped_span(space: &SplineSpace, x: f64) -> usize {
+    let last = space.spans().len() - 1;
+    space.find_span(x).unwrap_or(if x > space.spans()[last].right { last } else { 0 })
 }

@@ -6,29 +6,21 @@
 //! *strips* of fixed height. Sums are formed strip by strip, so they do not depend on the number of threads.
 //!
 //! A rectangle cuts the spans at its edges; a span that the boundary of another shape cuts has points of its
-//! own ([`cut`]), in batches behind those of the tables ([`cut_strips`]). Slits add rows for the points that
+//! own ([`cut`]), in batches behind those of the tables ([`strips`]). Slits add rows for the points that
 //! use copies of control points ([`parting`]). On a patch with a geometry the lattice is one of parameters,
 //! in the unit of the knots, and has a [`Mapping`].
 
-mod build;
-mod cells;
+pub(crate) mod build;
 mod cut;
-mod cut_batch;
-mod cut_strips;
 mod evaluate;
-mod gaps;
-mod integrate;
-mod map;
-mod mapped;
-pub(crate) mod moving;
 mod parting;
 mod point_graph;
 mod sheets;
+mod strips;
 mod tables;
 
-pub(crate) use cut_batch::CutBatch;
-pub(crate) use mapped::{MappedPoint, Mapping};
 pub(crate) use sheets::Sheets;
+pub(crate) use tables::{CutBatch, MappedPoint, Mapping, Row, Tile};
 
 use std::ops::Range;
 
@@ -41,7 +33,6 @@ use crate::splines::quadrature::Rule;
 use crate::splines::spline::{MAX_FUNCTIONS, SplineSpace};
 use cut::Rules;
 use tables::Along;
-pub(crate) use tables::{Row, Tile};
 
 /// Rows of spans in a strip; at least the highest degree, so that only neighbouring strips share control
 /// points.

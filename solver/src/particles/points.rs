@@ -165,15 +165,10 @@ impl Cells {
         }
     }
 
-    /// The points of a span.
-    pub(crate) fn points_in(&self, [i, j]: [usize; 2]) -> Range<usize> {
-        let key = j * self.spans[0] + i;
-        self.starts[key]..self.starts[key + 1]
-    }
-
     /// Whether a span has points.
-    pub(crate) fn is_occupied(&self, span: [usize; 2]) -> bool {
-        !self.points_in(span).is_empty()
+    pub(crate) fn is_occupied(&self, [i, j]: [usize; 2]) -> bool {
+        let key = j * self.spans[0] + i;
+        self.starts[key] < self.starts[key + 1]
     }
 
     /// Heap memory, bytes.

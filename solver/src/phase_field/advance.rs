@@ -1,4 +1,4 @@
-//! Steps between two solves of the phase field.
+//! Steps between two solves of the phase field, and what of it a checkpoint stores.
 //!
 //! A time step follows the fastest wave. A crack moves by some thirtieth of a span in it, so c need not be
 //! solved for in every step. Between two solves c decreases as it did between the last two, which are m steps
@@ -24,6 +24,7 @@ use std::ops::Range;
 
 use super::PhaseField;
 use super::lag::Lag;
+use crate::checkpoint::{Archive, StateError};
 use crate::linear_algebra::conjugate_gradients::{Convergence, SolveFailure};
 use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::lane::Lane;
@@ -134,5 +135,24 @@ impl PhaseField {
     pub(crate) fn taking_part(&self) -> impl Iterator<Item = Range<usize>> {
         let grid = self.matrix.grid;
         self.matrix.active().within(grid, 0..grid.rows)
+    }
+
+    /// Stores or takes up what steps change. A system that is assembled anew at every step is not part of it.
+    ///
+    /// # Errors
+    /// Bytes of another scene.
+    pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
+        let Self { model: _, tolerance: _, matrix, load: _, phase, previous, assembled, method, lag, bounds, counts } =
+            self;
+        if !assembled.is_empty() {
+            archive.list(matrix.coefficients_mut())?;
+        }
+        archive.list(phase)?;
+        archive.list(previous)?;
+        archive.list(assembled)?;
+        archive.value(counts)?;
+        bounds.as_mut().map_or(Ok(()), |bounds| bounds.exchange(archive))?;
+        lag.as_mut().map_or(Ok(()), |lag| lag.exchange(archive))?;
+        method.preconditioner().map_or(Ok(()), |preconditioner| preconditioner.exchange(archive, matrix))
     }
 }

@@ -13,8 +13,8 @@ mod pairs;
 
 use rayon::prelude::*;
 
-pub(crate) use form::Scaled;
 pub use form::{Constant, Integrand, PointCoefficients};
+pub(crate) use form::{Increments, Scaled, changed};
 
 use crate::linear_algebra::lane::{Lane, Vectorised, dispatch};
 use crate::linear_algebra::stencil::Stencil;

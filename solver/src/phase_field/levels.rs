@@ -5,16 +5,15 @@
 //! level.
 
 use super::lag::Lag;
+use super::method::{ITERATION_LIMIT, Method, PreconditionedSolver};
 use super::{PhaseField, in_the_norm, is_finite};
 use crate::linear_algebra::active_columns::ActiveColumns;
 use crate::linear_algebra::conjugate_gradients::{Convergence, OnGrid, SolveFailure, solve_on_grids};
 use crate::linear_algebra::interface::{Interface, fold_all, spread_all};
 use crate::linear_algebra::lane::Lane;
-use crate::linear_algebra::preconditioned::{ITERATION_LIMIT, PreconditionedSolver};
 use crate::linear_algebra::preconditioner::TOO_MANY;
 use crate::linear_algebra::stencil::Stencil;
 use crate::particles::lattice::Lattice;
-use crate::phase_field::method::Method;
 
 /// Diagonal, of the largest, that is left of material that was taken away.
 const NOTHING: f64 = 1e-13;

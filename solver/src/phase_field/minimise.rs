@@ -13,13 +13,12 @@
 //! ledger: that of a bound which is just reached or left, since one that stays does none.
 
 use super::PhaseField;
-use super::awake::Awake;
-use super::bounds::{Bounds, Linearised};
+use super::awake::{Awake, Bounds, Linearised};
+use super::method::ITERATION_LIMIT;
 use crate::linear_algebra::active_columns::ActiveColumns;
 use crate::linear_algebra::conjugate_gradients::{Convergence, SolveFailure};
 use crate::linear_algebra::extremes::{larger, smaller};
 use crate::linear_algebra::lane::Lane;
-use crate::linear_algebra::preconditioned::ITERATION_LIMIT;
 use crate::particles::lattice::Lattice;
 
 /// Most sets of held values, and most halvings of a step.

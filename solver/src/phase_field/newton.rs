@@ -13,8 +13,7 @@
 use rayon::prelude::*;
 
 use super::PhaseField;
-use super::awake::Awake;
-use super::bounds::Linearised;
+use super::awake::{Awake, Linearised};
 use crate::linear_algebra::lane::Lane;
 use crate::particles::lattice::Lattice;
 

@@ -1,7 +1,7 @@
 //! The watch over the numbers of a run, and what is said when they break.
 
 use super::Simulation;
-use super::causes::{cause, numbers};
+use super::breakdown::{cause, numbers};
 use super::frame::{Bodies, either};
 use crate::contact::gap_potential::TooDeep;
 use crate::contact::impulse::Unconverged;

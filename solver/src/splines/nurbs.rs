@@ -29,22 +29,20 @@
 
 pub(crate) mod check;
 mod construct;
-mod elevate;
 mod error;
 mod functions;
-mod insert;
 pub(crate) mod locate;
+mod refine;
 
 pub use error::{LocateError, NurbsError};
 pub(crate) use functions::products;
 
-pub use functions::{MapPoint, RationalFunctions, rational_functions};
+pub use functions::{MapPoint, PointValue, RationalFunctions, rational_functions};
 
 use rayon::prelude::*;
 
 use crate::linear_algebra::extremes::larger;
 use crate::scene::Layout;
-use crate::splines::point_value::PointValue;
 use crate::splines::quadrature::Rule;
 use crate::splines::spline::SplineSpace;
 

@@ -9,8 +9,7 @@ use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::extremes::{around, smaller};
 use crate::scene::{Geometry, Mesh, Side};
 use crate::splines::nurbs::locate::Location;
-use crate::splines::nurbs::{NurbsError, NurbsPatch, RationalFunctions, products};
-use crate::splines::point_value::PointValue;
+use crate::splines::nurbs::{NurbsError, NurbsPatch, PointValue, RationalFunctions, products};
 use crate::splines::quadrature::Rule;
 use crate::splines::spline::SplineSpace;
 

@@ -8,10 +8,9 @@
 
 use crate::linear_algebra::extremes::{larger, smaller};
 use crate::linear_algebra::lane::{Lane, prefetch};
-use crate::material::degradation::BROKEN;
-use crate::material::degradation::FractureModel;
+use crate::material::degradation::{BROKEN, FractureModel};
 use crate::material::elasticity::ElasticModuli;
-use crate::material::hencky::largest_principal;
+use crate::material::hencky::spectral_radius;
 use crate::material::split::{driving_energy, split};
 use crate::transfer::point_kernel::{PointKernel, PointValues, Stress};
 
@@ -262,7 +261,7 @@ impl PointKernel for LargestDistortion<'_> {
         let of_points = |size: Lane| size.zip(weight, |size, w| if w > 0.0 { size } else { 0.0 });
         self.size = self.size.zip(of_points(tangent), larger);
         if self.phase.is_empty() {
-            let strain = |l: usize| largest_principal([xx.0[l], yy.0[l], 0.5 * (xy.0[l] + yx.0[l])]);
+            let strain = |l: usize| spectral_radius([xx.0[l], yy.0[l], 0.5 * (xy.0[l] + yx.0[l])]);
             self.size = self.size.zip(of_points(Lane(std::array::from_fn(strain))), larger);
         }
         Stress::ZERO

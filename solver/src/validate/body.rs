@@ -1,11 +1,9 @@
 //! Checks of bodies: shape, place in the mesh, points, resolution of the length scale, tractions, cracks.
 
-use super::findings::Findings;
 use super::geometry::{covered_side, cut_nowhere, defect, narrow_gap, outline};
-use super::ground::Ground;
-use super::look::{Look, TOLERANCE};
+use super::ground::{Findings, Ground, Look, TOLERANCE};
 use super::points::Points;
-use super::{cracks, edge_conditions, resolution, seed, tractions};
+use super::{conditions, cracks, mesh, tractions};
 use crate::particles::lattice::cuts_spans;
 use crate::scene::{Body, CrackModel, Fracture, Frame, Kinematics, Layout, Mesh, Scene, Shape};
 use crate::splines::nurbs::{LocateError, NurbsPatch};
@@ -60,13 +58,13 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
         }
         let before = findings.errors.len();
         if placed && let Some(fracture) = fracture {
-            resolution::check(body, fracture, ground, findings);
+            mesh::check_resolution(body, fracture, ground, findings);
         }
         let look = Look::new(body, ground, &scene.analysis);
         for (j, traction) in body.tractions.iter().enumerate() {
             tractions::check(&format!("{key}.traction.{j}"), traction, &look, findings);
         }
-        edge_conditions::check(&key, scene, &look, findings);
+        conditions::check_edges(&key, scene, &look, findings);
         for (j, crack) in body.cracks.iter().enumerate() {
             if crack.is_slit() {
                 cracks::slit(&format!("{key}.crack.{j}"), crack, scene, ground, findings);
@@ -86,7 +84,7 @@ fn material_points(key: &str, body: &Body, fracture: Option<&Fracture>, ground: 
     let points = Points::new(body, ground).filter(|points| !has_cut_spans || points.exist());
     let Some(points) = points else {
         let seeds = (0..body.cracks.len()).filter(|_| fracture.is_some());
-        return seeds.for_each(|j| seed::unchecked(format!("{key}.crack.{j}"), findings));
+        return seeds.for_each(|j| cracks::unchecked(format!("{key}.crack.{j}"), findings));
     };
     let [_, h] = ground.span_lengths(&body.shape);
     if !points.exist() {
@@ -94,7 +92,7 @@ fn material_points(key: &str, body: &Body, fracture: Option<&Fracture>, ground: 
         let remedy = "use smaller cells or more particles_per_cell, or make the body larger";
         findings.error(format!("{key}.shape"), message, remedy);
     } else if let Some(fracture) = fracture.filter(|fracture| fracture.model == CrackModel::At2) {
-        seed::check(key, body, fracture, &points, h, findings);
+        cracks::seeds(key, body, fracture, &points, h, findings);
     }
 }
 

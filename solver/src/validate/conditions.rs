@@ -1,16 +1,17 @@
-//! Checks of the conditions on the sides of the mesh, and of names and motions of all conditions.
+//! Checks of the conditions on the sides of the mesh and on edges of bodies: their names and motions, and
+//! what they prescribe, compared with each other.
 
-use super::findings::{Findings, side_name};
-use super::ground::Ground;
-use super::held::Held;
-use super::time;
+use super::ground::{Findings, Ground, Look, TOLERANCE, side_name};
+use super::tractions;
 use crate::dynamics::body_sample::column_name;
+use crate::dynamics::surface::curve_of;
 use crate::dynamics::updated_frame::held_sides::lies_on;
-use crate::scene::{Body, Boundary, Frame, Mass, Mesh, Prescribed, Scene};
+use crate::scene::edges::BoundaryEdge;
+use crate::scene::{Body, Boundary, EdgeCondition, Frame, Hold, Mass, Mesh, Prescribed, Scene, Shape};
 use crate::splines::patch::Patch;
 
-/// Relative tolerance of "on the side", of the size of the mesh.
-const TOLERANCE: f64 = crate::splines::spline::ROUND_OFF;
+/// Distance within which two places are one, of the size of an edge.
+const NEAR: f64 = 1e-9;
 
 pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
     for (i, boundary) in scene.boundaries.iter().enumerate() {
@@ -39,10 +40,10 @@ fn word(prescribed: &Prescribed) -> &'static str {
 }
 
 /// What a condition prescribes of some components.
-pub(super) fn motion(key: &str, prescribed: &Prescribed, fix: [bool; 2], scene: &Scene, findings: &mut Findings) {
+fn motion(key: &str, prescribed: &Prescribed, fix: [bool; 2], scene: &Scene, findings: &mut Findings) {
     let (word, value) = (word(prescribed), prescribed.value());
     findings.finite(format!("{key}.{word}"), &value);
-    time::check(key, &prescribed.time, scene.analysis.end_time, findings);
+    tractions::time(key, &prescribed.time, scene.analysis.end_time, findings);
     without_jump(key, prescribed, fix, scene.equilibrium, findings);
     for d in (0..2).filter(|&d| !fix[d] && value[d] != 0.0) {
         let name = ["x", "y"][d];
@@ -143,5 +144,137 @@ fn held(key: &str, boundary: &Boundary, scene: &Scene, findings: &mut Findings) 
             side_name(boundary.side)
         );
         findings.warn(key, message);
+    }
+}
+
+/// Checks the conditions on the edges of a body.
+pub(super) fn check_edges(key: &str, scene: &Scene, look: &Look<'_>, findings: &mut Findings) {
+    let body = look.body;
+    for (j, condition) in body.conditions.iter().enumerate() {
+        let key = format!("{key}.condition.{j}");
+        if !has_edges(&key, scene, look, findings) {
+            continue;
+        }
+        if condition.hold == Hold::Components([false; 2]) {
+            let remedy = "give fix = [\"x\"], [\"y\"], [\"x\", \"y\"] or [\"normal\"], or remove the condition";
+            findings.error(format!("{key}.fix"), "nothing is fixed", remedy);
+        }
+        let before = findings.errors.len();
+        motion(&key, &condition.prescribed, condition.components(), scene, findings);
+        tractions::edge(&key, &condition.edge, true, look, findings);
+        if findings.errors.len() > before {
+            continue;
+        }
+        let here = Held::on_edge(j, condition, body);
+        let sides = scene.boundaries.iter().enumerate().map(|(i, boundary)| Held::on_side(i, boundary, &scene.mesh));
+        let edges = body.conditions[..j].iter().enumerate().map(|(i, other)| Held::on_edge(i, other, body));
+        for there in sides.chain(edges) {
+            here.compare(&there, true, &key, findings);
+        }
+    }
+}
+
+/// What bodies that meet themselves, patches and the consistent mass do not have.
+fn has_edges(key: &str, scene: &Scene, look: &Look<'_>, findings: &mut Findings) -> bool {
+    let (message, remedy) = if look.body.rigid {
+        ("a condition on a rigid body, which moves with its velocity", "remove the condition, or rigid = true")
+    } else if scene.analysis.mass == Mass::Consistent {
+        ("a condition on a body with the consistent mass, which is not implemented", "use mass = \"lumped\"")
+    } else if look.body.shape == Shape::Patch || scene.mesh.geometry.is_some() {
+        (
+            "a condition on a body on a patch, whose edges are the sides of the mesh",
+            "use [[boundary]] with side = \"left\"",
+        )
+    } else {
+        return true;
+    };
+    findings.error(key, message, remedy);
+    false
+}
+
+/// What is prescribed on a part of a curve, and by whom.
+pub(super) struct Held<'a> {
+    who: String,
+    curve: BoundaryEdge,
+    part: [f64; 2],
+    hold: Hold,
+    prescribed: &'a Prescribed,
+}
+
+impl<'a> Held<'a> {
+    pub(super) fn on_edge(
+        i: usize,
+        EdgeCondition { edge, hold, prescribed, .. }: &'a EdgeCondition,
+        body: &Body,
+    ) -> Self {
+        let (curve, part) = curve_of(body, edge);
+        Self { who: format!("condition.{i}"), curve, part, hold: *hold, prescribed }
+    }
+
+    pub(super) fn on_side(i: usize, boundary: &'a Boundary, mesh: &Mesh) -> Self {
+        let (min, max) = (mesh.origin(), mesh.end());
+        let [mut a, mut b] = Shape::Rectangle { min, max }.side(boundary.side).unwrap_or_default();
+        if let Some([from, to]) = boundary.part {
+            let along = boundary.side.along();
+            (a[along], b[along]) = (from, to);
+        }
+        Self {
+            who: format!("boundary.{i}"),
+            curve: BoundaryEdge::Line([a, b]),
+            part: [0.0, 1.0],
+            hold: Hold::Components(boundary.fix),
+            prescribed: &boundary.prescribed,
+        }
+    }
+
+    /// An error of the key if both prescribe the same component on a part, or, where they `join`, other
+    /// motions of the place where they meet.
+    pub(super) fn compare(&self, other: &Self, join: bool, key: &str, findings: &mut Findings) {
+        if self.shares_component_with(other) && (self.overlaps(other) || other.overlaps(self)) {
+            let message = format!("this motion is prescribed on a part of this edge by {} too", other.who);
+            findings.error(format!("{key}.fix"), message, "remove one of the two");
+        } else if let (Some(d), true) = (self.contradicts(other), join && (self.meets(other) || other.meets(self))) {
+            let message = format!("{} prescribes another motion in {} where this edge ends", other.who, ["x", "y"][d]);
+            let remedy = "give both the same motion, or leave a gap of a cell between them";
+            findings.error(format!("{key}.fix"), message, remedy);
+        }
+    }
+
+    fn shares_component_with(&self, other: &Self) -> bool {
+        match [self.hold, other.hold] {
+            [Hold::Components(a), Hold::Components(b)] => (0..2).any(|d| a[d] && b[d]),
+            _ => true,
+        }
+    }
+
+    /// A component to which both give different motions.
+    fn contradicts(&self, other: &Self) -> Option<usize> {
+        let [Hold::Components(a), Hold::Components(b)] = [self.hold, other.hold] else { return None };
+        (0..2).find(|&d| a[d] && b[d] && self.prescribed.course(d) != other.prescribed.course(d))
+    }
+
+    /// Whether an end of it is on the other.
+    fn meets(&self, other: &Self) -> bool {
+        self.part.iter().any(|end| other.holds(self.curve.at(*end).0))
+    }
+
+    /// Whether more than places of it are on the other.
+    fn overlaps(&self, other: &Self) -> bool {
+        let [from, to] = self.part;
+        let ends = other.part.map(|end| self.curve.place_of(other.curve.at(end).0));
+        let ends = ends.into_iter().map(|place| self.curve.place_after(from, place));
+        let mut places: Vec<f64> = ends.filter(|s| (from..=to).contains(s)).chain([from, to]).collect();
+        places.sort_by(f64::total_cmp);
+        let mut parts = places.windows(2).filter(|pair| pair[1] - pair[0] > NEAR * (to - from));
+        parts.any(|pair| other.holds(self.curve.at(0.5 * (pair[0] + pair[1])).0))
+    }
+
+    /// Whether a position (m) is on it.
+    fn holds(&self, position: [f64; 2]) -> bool {
+        let [from, to] = self.part;
+        let place = self.curve.place_after(from, self.curve.place_of(position));
+        let [x, y] = self.curve.at(place).0;
+        (from - NEAR..=to + NEAR).contains(&place)
+            && (position[0] - x).hypot(position[1] - y) <= NEAR * self.curve.length()
     }
 }

@@ -1,10 +1,9 @@
 //! Checks of several bodies, rigid bodies and contact.
 
 use super::analysis::MOST_STEPS;
-use super::findings::Findings;
 use super::geometry::{complexity, defect};
-use super::ground::Ground;
-use super::time;
+use super::ground::{Findings, Ground};
+use super::tractions;
 use crate::contact::Surface;
 use crate::contact::motion::{longest_step, rigid_bodies_that_approach};
 use crate::contact::outline::without_patch;
@@ -135,7 +134,7 @@ fn rigid(key: &str, body: &Body, scene: &Scene, findings: &mut Findings) {
         );
         findings.warn(format!("{key}.shape"), message);
     }
-    time::check(key, &body.time, scene.analysis.end_time, findings);
+    tractions::time(key, &body.time, scene.analysis.end_time, findings);
 }
 
 /// Bodies that overlap at t = 0: contact would have to push them apart, and that energy comes from nowhere.

@@ -1,6 +1,6 @@
 //! Checks of materials: ranges of the constants, and whether the wave speed they imply is possible.
 
-use super::findings::Findings;
+use super::ground::Findings;
 use crate::material::cohesive::Cohesive;
 use crate::material::elasticity::ElasticModuli;
 use crate::scene::{CrackModel, Fracture, Frame, Material, Plane, Scene, Split};

@@ -1,8 +1,7 @@
 //! Checks of what is recorded: samples, frames, probes, bodies, J-integrals.
 
-use super::findings::Findings;
 use super::geometry::defect;
-use super::ground::Ground;
+use super::ground::{Findings, Ground, TOLERANCE};
 use crate::dynamics::body_sample::column_name;
 use crate::dynamics::total_frame::domain::{Domain, column};
 use crate::linear_algebra::extremes::larger;
@@ -13,8 +12,6 @@ use crate::splines::patch::Patch;
 const MOST_RECORDED: usize = 64;
 /// Least radius of the domain of a J-integral, in spans.
 const LEAST_SPANS: f64 = 4.0;
-/// Relative tolerance of "in a body".
-const TOLERANCE: f64 = crate::splines::spline::ROUND_OFF;
 
 pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
     let (output, end) = (&scene.output, scene.analysis.end_time);

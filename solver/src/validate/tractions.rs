@@ -1,18 +1,22 @@
-//! Checks of tractions, and of the edges of loads and conditions: they lie on their body.
+//! Checks of tractions, of the edges of loads and conditions, which lie on their body, and of factors over
+//! time.
 
 use std::f64::consts::TAU;
 
-use super::findings::{Findings, side_name};
-use super::look::{Look, TOLERANCE};
-use super::time;
+use super::ground::{Findings, Look, TOLERANCE, side_name};
 use crate::dynamics::surface::curve_of;
 use crate::scene::edges::{BESIDE, beside};
+use crate::scene::time::{Course, TimeFactor};
 use crate::scene::{Edge, Load, Shape, Traction};
 
 /// Intervals between the positions at which an edge is looked at.
 const INTERVALS: usize = 32;
+
 const ON_BOUNDARY: &str = "give an edge of which every point lies on the body's boundary; the faces of a slit carry no load: \
                            cut a notch";
+
+/// Times at which a formula is looked at, of the simulated time.
+const LOOKS: usize = 1000;
 
 pub(super) fn check(key: &str, traction: &Traction, look: &Look<'_>, findings: &mut Findings) {
     match &traction.load {
@@ -20,7 +24,7 @@ pub(super) fn check(key: &str, traction: &Traction, look: &Look<'_>, findings: &
         Load::Pressure(pressure) => drop(findings.finite(format!("{key}.pressure"), &[*pressure])),
         Load::Field(_) => {} // whether it is finite where it acts is seen when the run begins
     }
-    time::check(key, &traction.time, look.end_time, findings);
+    time(key, &traction.time, look.end_time, findings);
     if traction.time.range(look.end_time) == [0.0; 2] && traction.time.integral(look.end_time) == 0.0 {
         findings.warn(format!("{key}.time"), "the factor is zero until end_time: this load never acts");
     }
@@ -104,5 +108,44 @@ fn on_boundary(key: String, form: &str, edge: &Edge, needs_side: bool, look: &Lo
             body.name
         );
         findings.warn(key, message);
+    }
+}
+
+/// Checks the factor of the load or condition at `key` over the simulated time, `end` seconds.
+pub(super) fn time(key: &str, factor: &TimeFactor, end: f64, findings: &mut Findings) {
+    match &factor.course {
+        Course::Constant => {}
+        Course::Ramp(rise) => {
+            let like = "\"1 us\", or leave it out for the full value from t = 0";
+            findings.positive(format!("{key}.time.ramp"), *rise, like);
+        }
+        Course::Smooth(rise) => {
+            findings.positive(format!("{key}.time.smooth"), *rise, "\"1 us\"");
+        }
+        Course::Table(rows) => table(&format!("{key}.time"), rows, findings), // of the scene, or of a file
+        Course::Formula(formula) => {
+            let times = (0..=LOOKS).map(|i| end * i as f64 / LOOKS as f64);
+            if let Some(time) = times.clone().find(|&time| !factor.value(time).is_finite()) {
+                let message = format!("{:?} is not finite at t = {time:e} s", formula.text());
+                findings.error(format!("{key}.time.formula"), message, "give a formula that is finite from t = 0 on");
+            }
+        }
+    }
+    if let Some(until) = factor.until {
+        findings.positive(format!("{key}.time.until"), until, "\"5 us\", or leave it out");
+    }
+}
+
+/// Times that increase, and factors that are finite.
+fn table(key: &str, rows: &[[f64; 2]], findings: &mut Findings) {
+    if rows.is_empty() {
+        return findings.error(key, "a table without rows", "give rows of time and factor: [[\"0 us\", 0.0], …]");
+    }
+    if !findings.finite(key, &rows.concat()) {
+        return;
+    }
+    if let Some(i) = (1..rows.len()).find(|&i| rows[i][0] <= rows[i - 1][0]) {
+        let message = format!("row {i} of the table is at {} s, after {} s", rows[i][0], rows[i - 1][0]);
+        findings.error(key, message, "give times that increase from row to row");
     }
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use super::prescribed::Reactions;
 use crate::checkpoint::{Archive, StateError};
-use crate::dynamics::constraints::Constraints;
+use crate::dynamics::constraints::{Constraints, Reaction};
 use crate::dynamics::edge_moments::{
     EdgeMultipliers, Moment, Multipliers, along_mesh, is_whole_side, moments_of, multiplier_space,
 };
@@ -13,7 +13,6 @@ use crate::dynamics::energy::ConditionSample;
 use crate::dynamics::failure::Failure;
 use crate::dynamics::loads::material_at;
 use crate::dynamics::mass::MassMatrix;
-use crate::dynamics::reaction::Reaction;
 use crate::dynamics::surface::{SurfacePoint, smooth_parts};
 use crate::linear_algebra::control_grid::VectorField;
 use crate::particles::lattice::Lattice;
@@ -162,9 +161,7 @@ impl EdgeConditions {
     /// Reaction and work of every condition with a name, for a thickness of a metre.
     pub(super) fn samples(&self) -> impl Iterator<Item = ConditionSample> + '_ {
         let named = self.reactions.iter().zip(&self.conditions);
-        named.filter_map(|(reaction, condition)| {
-            Some(reaction.sample(condition.name.as_deref()?, condition.components()))
-        })
+        named.filter_map(|(reaction, condition)| reaction.sample(&condition.name, condition.components()))
     }
 
     /// Stores or takes up what steps change.

@@ -5,7 +5,7 @@
 //! product. Loads that would accelerate it are refused; what is left of them by round-off is taken away.
 
 use super::TotalFrame;
-use super::tangent::Tangent;
+use super::stiffness::Tangent;
 use crate::dynamics::critical_step::{StiffnessOperator, dot};
 use crate::dynamics::failure::Failure;
 use crate::linear_algebra::extremes::{larger, largest};

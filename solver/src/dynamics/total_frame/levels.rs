@@ -17,7 +17,6 @@
 //! that of the finest level over the whole mesh: the functions in use are combinations of its own, and the
 //! lumped mass is convex.
 
-mod copies;
 mod regions;
 mod shares;
 
@@ -38,8 +37,7 @@ use crate::scene::{Crack, CrackKind, Scene};
 use crate::splines::insertion::knot_insertion;
 use crate::splines::spline::SplineSpace;
 use crate::transfer::sweep::StripForces;
-use copies::{copy_fields, copy_points};
-use regions::{Functions, ROWS, Regions};
+use regions::{Functions, ROWS, Regions, copy_fields, copy_points};
 
 /// Steps from one look at the phase field to the next: a crack is a third of a span further at most. Where
 /// the energy nears a threshold is seen in every step, since a wave is faster.

@@ -1,4 +1,4 @@
-//! Prescribed motion in the total frame, and the reactions to it.
+//! Prescribed motion in the total frame: the control points of conditions on sides, and the reactions to it.
 //!
 //! Between two whole steps a prescribed component moves with one velocity w: the change of a prescribed
 //! displacement over the step, or a prescribed velocity in the middle of it. Its acceleration is that of
@@ -9,13 +9,24 @@
 //! R = M a − f_ext + f_int,   work of a step = dt w · (R_n + R_n+1)/2
 //! ```
 
+use std::collections::BTreeMap;
+
 use crate::checkpoint::{Archive, StateError};
-use crate::dynamics::constraints::Constraints;
+use crate::dynamics::constraints::{Constraints, Reaction};
 use crate::dynamics::energy::ConditionSample;
 use crate::dynamics::mass::MassMatrix;
-use crate::dynamics::reaction::Reaction;
+use crate::dynamics::surface::mouths;
 use crate::linear_algebra::control_grid::VectorField;
-use crate::scene::Boundary;
+use crate::particles::lattice::Lattice;
+use crate::scene::{Body, Boundary, Layout};
+use crate::splines::patch::{Patch, control_points_on};
+use crate::splines::quadrature::Rule;
+
+/// Part of the integral of a function along a side that has to lie on the part that is held, up to round-off.
+const HELD: f64 = 0.5 - 1e-9;
+
+/// Values of functions that vanish on the side, to round-off.
+const ROUND_OFF: f64 = 1e-12;
 
 /// A reaction for every condition on the sides of the mesh; empty if none of them moves or has a name.
 #[derive(Debug, Clone)]
@@ -81,9 +92,7 @@ impl Reactions {
 
     /// Reaction and work of every condition with a name, for a thickness of a metre.
     pub(super) fn samples(&self, constraints: &Constraints) -> Vec<ConditionSample> {
-        let sample = |(reaction, condition): (&Reaction, &Boundary)| {
-            Some(reaction.sample(condition.name.as_deref()?, condition.fix))
-        };
+        let sample = |(reaction, condition): (&Reaction, &Boundary)| reaction.sample(&condition.name, condition.fix);
         self.0.iter().zip(&constraints.conditions).filter_map(sample).collect()
     }
 
@@ -94,4 +103,31 @@ impl Reactions {
     pub(super) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
         self.0.iter_mut().try_for_each(|reaction| archive.value(reaction))
     }
+}
+
+/// Control points of the side; of a part of it, or where a slit ends on it, those whose functions have at
+/// least half of their integral along the side on the part.
+pub(super) fn held_points(patch: &Patch, lattice: &Lattice, body: &Body, boundary: &Boundary) -> Vec<usize> {
+    if boundary.part.is_none() && lattice.sheets().is_none() {
+        return control_points_on(boundary.side, lattice.grid);
+    }
+    let along = boundary.side.along();
+    let part = boundary.part.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+    let rule = Rule::new(Layout::Gauss, patch.spaces[along].degree() + 1);
+    let mut integrals = BTreeMap::<usize, [f64; 2]>::new(); // on the part, and in all
+    let mut cuts: Vec<f64> = mouths(body).into_iter().map(|mouth| mouth[along]).chain(part).collect();
+    cuts.sort_by(f64::total_cmp);
+    for point in patch.boundary_cut(boundary.side, &rule, &cuts) {
+        let on_it = (part[0]..=part[1]).contains(&point.functions.position[along]);
+        let inside = fault!("part-of-a-side-is-all-of-it", on_it => true);
+        for &(at, value) in point.functions.values.iter().filter(|(_, value)| *value > ROUND_OFF) {
+            let at = lattice.control_point(at, point.functions.values[0].0, point.functions.position);
+            let [on_part, all] = integrals.entry(at).or_default();
+            *all += value * point.length;
+            if inside {
+                *on_part += value * point.length;
+            }
+        }
+    }
+    integrals.into_iter().filter(|(_, [on_part, all])| *on_part >= HELD * all).map(|(at, _)| at).collect()
 }

@@ -1,7 +1,8 @@
-//! What conditions do to a body in a step: on the control points of sides, and on edges that move.
+//! What conditions do to a body in a step, on the control points of sides and on edges that move, and what
+//! the step adds to its energy ledger and to the losses of its transfers.
 
 use super::field::DiscreteField;
-use super::grid::ImposedEnergy;
+use super::grid::{EndOfStep, ImposedEnergy};
 use super::held_sides::constraints;
 use crate::dynamics::failure::Failure;
 
@@ -51,5 +52,40 @@ impl DiscreteField {
         let kick = self.kick_length(dt);
         self.ledger.external_work += edges.hold_pushed(&mut self.nodes.acceleration, kick);
         self.edges = Some(edges);
+    }
+
+    /// To be asked once the velocities for the points are known.
+    pub(super) fn end_of_step(&self) -> EndOfStep {
+        let nodes = &self.nodes;
+        EndOfStep {
+            kinetic: nodes.kinetic_energy(&nodes.velocity),
+            momentum: nodes.momentum(&nodes.velocity),
+            not_followed: nodes.power(false),
+        }
+    }
+
+    /// Books the works and losses of the step that ends now.
+    pub(super) fn book(&mut self, dt: f64, end_of_step: &EndOfStep, imposed: ImposedEnergy) {
+        let weight = self.gravity[0] * end_of_step.momentum[0] + self.gravity[1] * end_of_step.momentum[1];
+        let powers = self.loads.iter().map(|load| load.powers(self.time, dt));
+        let [before, now] = powers.fold([0.0; 2], |[a, b], [before, now]| [a + before, b + now]);
+        let [forced_before, forced_now] = self.forcing.as_ref().map_or([0.0; 2], |forcing| forcing.powers);
+        let driven = self.edges.as_mut().map_or(0.0, |edges| edges.work(dt));
+        let on_points = now + forced_now + weight - self.stress_work / dt;
+        self.losses.kinetic += end_of_step.kinetic - self.nodes.kinetic_energy(&self.nodes.arrived);
+        self.losses.power += 0.5 * dt * (end_of_step.not_followed + on_points - self.nodes.power(true));
+        self.losses.imposed += fault!("loss-forgotten", imposed.loss => 0.0);
+        self.ledger.external_work += imposed.work + dt * weight + 0.5 * dt * (before + now);
+        self.ledger.external_work += driven + 0.5 * dt * (forced_before + forced_now);
+        self.ledger.transfer_loss = self.losses.sum();
+    }
+
+    /// Books the change of the stagger `dt²/8 aᵀ M a` where a step of `dt` seconds follows one of another
+    /// length; `half_square` is `1/2 aᵀ M a`.
+    pub(super) fn book_change_of_step(&mut self, dt: f64, half_square: impl FnOnce(&Self) -> f64) {
+        if !self.at_start && dt != self.last_step {
+            let squares = self.last_step * self.last_step - dt * dt;
+            self.losses.step -= 0.25 * squares * half_square(self);
+        }
     }
 }

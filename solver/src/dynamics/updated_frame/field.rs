@@ -1,7 +1,7 @@
 //! One body of the updated frame: its points and its own nodal fields, a discrete field on the shared patch.
 //!
 //! The nodal fields cover the part of the patch the body is in and a few spans around it; the part follows
-//! the body ([`part`](super::part)). Bodies know nothing of each other: see [`crate::contact`].
+//! the body ([`fragments`](super::fragments)). Bodies know nothing of each other: see [`crate::contact`].
 
 use std::sync::Arc;
 
@@ -11,14 +11,12 @@ use super::affine::AffineVelocities;
 use super::grid::{EndOfStep, NodalFields};
 use super::held_edges::HeldEdges;
 use super::held_sides::HeldSide;
+use super::loads::{PointForcing, SurfaceLoad};
 use super::losses::TransferLosses;
 use super::pointwise_fracture::PointwiseFracture;
-use super::smoothing::Smoothing;
 use super::strain::{FiniteStrain, SmallStrain, StrainUpdate};
-use super::tractions::SurfaceLoad;
 use super::transfer::{GridToPoints, PointsToGrid, StripMotion};
-use super::velocity_transfer::VelocityTransfer;
-use super::volume_forcing::PointForcing;
+use super::velocity_transfer::{Smoothing, VelocityTransfer};
 use super::windows::{cut, scatter};
 use crate::contact::{BodyView, Surface};
 use crate::dynamics::energy::Ledger;
@@ -336,11 +334,6 @@ impl DiscreteField {
     /// Accelerations on a grid that has its masses and internal forces, where no step leads to them.
     pub(super) fn respond(&mut self) {
         self.add_external_forces();
-        self.accelerate_freely();
-    }
-
-    /// Accelerations of the forces, where no step leads to them.
-    pub(super) fn accelerate_freely(&mut self) {
         self.apply_boundary();
         self.accelerate();
     }

@@ -14,12 +14,12 @@
 
 use super::grid::{ImposedEnergy, NodalFields};
 use crate::checkpoint::{Archive, StateError};
+use crate::dynamics::constraints::Reaction;
 use crate::dynamics::edge_moments::{
     EdgeMultipliers, Moment, Multipliers, along_mesh, is_whole_side, moments_of, multiplier_space,
 };
 use crate::dynamics::energy::ConditionSample;
 use crate::dynamics::failure::Failure;
-use crate::dynamics::reaction::Reaction;
 use crate::dynamics::surface::{SurfacePoint, smooth_parts};
 use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::vectors::dot;
@@ -189,7 +189,7 @@ impl HeldEdges {
         let named = |(HeldEdge { condition, reaction, .. }, force): (&HeldEdge, &[f64; 2])| {
             let mut reaction = *reaction;
             (0..2).for_each(|d| reaction.force[0][d] += force[d]);
-            Some(reaction.sample(condition.name.as_deref()?, condition.components()))
+            reaction.sample(&condition.name, condition.components())
         };
         self.edges.iter().zip(forces).filter_map(named).collect()
     }

@@ -120,7 +120,7 @@ fn edge_of(patch: &Patch, boundary: &Boundary) -> Edge {
     Edge::Segment(segment)
 }
 
-/// What the sides hold on a part of the patch that begins at an [`origin`](super::part::origin).
+/// What the sides hold on a part of the patch that begins at an [`origin`](super::fragments::origin).
 pub(super) fn constraints(whole: &Patch, part: &Patch, origin: [usize; 2], sides: &[HeldSide]) -> Constraints {
     let reached = |side: Side| {
         let (d, upper) = side.axis();

@@ -1,13 +1,13 @@
 //! Pieces of a body: the connected components of its intact points and which of the others go with each, or
-//! given ones.
+//! given ones; and which of many places are near a place.
 
 use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::vectors::dot;
-use crate::particles::neighbours::Neighbours;
 use crate::particles::points::{FracturePoint, Point};
 
 /// Phase field below which material holds nothing together.
 pub(super) const SEPARATED: f64 = 0.5;
+
 /// Length of the steps by which points hang together, over the distance between points: more than a diagonal
 /// of points that a strain draws apart, less than the width in which a crack has c below [`SEPARATED`].
 pub(super) const STEP: f64 = 1.6;
@@ -121,6 +121,38 @@ pub(super) fn root(parents: &mut [usize], mut at: usize) -> usize {
     at
 }
 
+/// Places in squares, sorted by row and column.
+#[derive(Debug, Clone)]
+pub(crate) struct Neighbours {
+    side: f64,
+    sorted: Vec<([i32; 2], u32)>,
+}
+
+impl Neighbours {
+    /// Of places, m; `side` is that of a square, m.
+    pub(crate) fn new(places: impl Iterator<Item = [f64; 2]>, side: f64) -> Self {
+        let mut sorted: Vec<_> = places.enumerate().map(|(at, place)| (square(place, side), at as u32)).collect();
+        sorted.sort_unstable();
+        Self { side, sorted }
+    }
+
+    /// Numbers of the places in the nine squares around a place: of all within a side of it, and some more.
+    pub(crate) fn near(&self, place: [f64; 2]) -> impl Iterator<Item = usize> + '_ {
+        let [row, column] = square(place, self.side);
+        (row - 1..=row + 1).flat_map(move |row| {
+            let first = self.sorted.partition_point(|(square, _)| *square < [row, column - 1]);
+            let in_row = self.sorted[first..].iter().take_while(move |(square, _)| *square <= [row, column + 1]);
+            in_row.map(|(_, at)| *at as usize)
+        })
+    }
+}
+
+/// Row and column of the square of a place; those far off share the outermost.
+fn square(place: [f64; 2], side: f64) -> [i32; 2] {
+    let number = |x: f64| ((x / side).floor().clamp(-1e9, 1e9)) as i32;
+    [number(place[1]), number(place[0])]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -174,5 +206,20 @@ mod tests {
     fn what_no_chain_of_points_reaches_goes_with_the_first() {
         assert_eq!(found(&["####     ####", "####    .####"], 0.03).unwrap()[1], "0000    11111");
         assert_eq!(found(&["####         ####", "####    .    ####"], 0.03).unwrap()[1], "0000    0    1111");
+    }
+
+    #[test]
+    fn all_places_within_a_side_are_near() {
+        let places: Vec<[f64; 2]> =
+            (0..400).map(|i| [f64::from(i % 20) * 0.37 - 3.0, f64::from(i / 20) * 0.41 - 4.0]).collect();
+        let neighbours = Neighbours::new(places.iter().copied(), 0.9);
+        let distance = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
+        for place in &places {
+            let mut found: Vec<usize> =
+                neighbours.near(*place).filter(|at| distance(*place, places[*at]) <= 0.9).collect();
+            found.sort_unstable();
+            let all: Vec<usize> = (0..places.len()).filter(|at| distance(*place, places[*at]) <= 0.9).collect();
+            assert_eq!(found, all);
+        }
     }
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::UpdatedFrame;
-use super::volume_forcing::PointForcing;
+use super::loads::PointForcing;
 use crate::dynamics::failure::Failure;
 use crate::dynamics::forcing::Forcing;
 

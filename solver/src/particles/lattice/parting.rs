@@ -8,10 +8,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::cut_batch::CutPoint;
-use super::gaps::Gaps;
 use super::point_graph::{Group, PointGraph, PointIndex};
-use super::sheets::{FunctionIndex, Sheets};
+use super::sheets::{FunctionIndex, Gaps, Sheets};
+use super::tables::CutPoint;
 use super::{Lattice, Row};
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::lane::Lane;

@@ -6,9 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use super::Lattice;
-use super::cut_batch::CutPoint;
-use super::gaps::Gaps;
-use super::sheets::FunctionIndex;
+use super::sheets::{FunctionIndex, Gaps};
+use super::tables::CutPoint;
 use crate::scene::shape::{Segment, cross};
 
 /// Number of a point: those of tables column by column, and behind them those of cut spans.

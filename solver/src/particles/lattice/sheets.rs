@@ -4,13 +4,14 @@
 //! Copies are rows of control points behind those of the patch (a *sheet*), and the points that use them are
 //! rows of spans of the same lattice, or batches of cut spans: kernels and threads do not know of slits. A
 //! copy of a function that is whole is *tied* to its original. The phase field has no copies: it is
-//! continuous across a slit.
+//! continuous across a slit. Gaps of a shape part what lies on both sides of them as slits do.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 
 use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
 use crate::scene::Shape;
+use crate::scene::edges::BoundaryEdge;
 use crate::scene::shape::{Segment, cross};
 
 /// Column and row of a control point of the patch.
@@ -91,6 +92,31 @@ impl Sheets {
         for (rows, lift) in &self.rows {
             let copied = (rows.start - lift) * patch.stride..(rows.end - lift) * patch.stride;
             field.extend_from_within(copied);
+        }
+    }
+}
+
+/// What bars the step from a point to another one, beside slits.
+pub(super) enum Gaps<'a> {
+    /// Nothing.
+    None,
+    /// What lies outside a shape.
+    Of(&'a Shape),
+    /// The edges of a shape, by the first functions of the spans that they run through.
+    Between(BTreeMap<FunctionIndex, Vec<BoundaryEdge>>),
+}
+
+impl Gaps<'_> {
+    /// Whether they bar a step (m) between two spans, given by their first functions, that touch.
+    pub(super) fn bar(&self, step: Segment, [a, b]: [FunctionIndex; 2]) -> bool {
+        match self {
+            Self::None => false,
+            Self::Of(shape) => shape.is_left_on(step),
+            Self::Between(edges) => {
+                let spans = [a, [a[0], b[1]], [b[0], a[1]], b];
+                let spans = if a == b { &spans[..1] } else { &spans };
+                spans.iter().filter_map(|span| edges.get(span)).flatten().any(|edge| edge.is_crossed(step))
+            }
         }
     }
 }

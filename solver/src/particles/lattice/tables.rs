@@ -1,6 +1,18 @@
-//! Tables of shape functions, weights and positions along one direction.
+//! Tables of shape functions, weights and positions: along one direction, and of eight points side by side of
+//! a span that the boundary cuts.
+//!
+//! On a patch with a geometry the lattice is one of parameters, and each point has a [`MappedPoint`]. A
+//! rational field is a quotient of two spline fields, `u = A/W` with `A = Σ N_a w_a u_a` and
+//! `W = Σ N_b w_b`, so that sums still factor:
+//!
+//! ```text
+//! ∂u/∂ξ_d = (∂A/∂ξ_d − A ∂W/∂ξ_d / W)/W,   ∂u/∂x_j = Σ_d ∂u/∂ξ_d ∂ξ_d/∂x_j
+//! ```
 
+use super::cut::PointBox;
+use super::sheets::FunctionIndex;
 use crate::linear_algebra::lane::{LANES, Lane};
+use crate::splines::patch::Patch;
 use crate::splines::quadrature::Rule;
 use crate::splines::spline::{MAX_ORDER, SplineSpace};
 
@@ -113,4 +125,123 @@ pub(super) fn tiles(columns: &[Row], order: usize) -> Vec<Tile> {
         }
     }
     tiles
+}
+
+/// Points of a patch with a geometry.
+#[derive(Debug, Clone)]
+pub(crate) struct Mapping {
+    /// Weights of the control points, as a field.
+    pub weights: Vec<f64>,
+    /// One entry per batch.
+    pub points: Vec<MappedPoint>,
+}
+
+impl Mapping {
+    /// Heap memory, bytes.
+    pub(super) fn bytes(&self) -> usize {
+        8 * self.weights.len() + size_of::<MappedPoint>() * self.points.len()
+    }
+}
+
+/// The weight function W and the geometry map at a batch of points.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct MappedPoint {
+    /// 1/W.
+    pub inverse_weight: Lane,
+    /// `∂W/∂ξ_d / W`.
+    pub weight_slope: [Lane; 2],
+    /// `[∂ξ/∂x, ∂ξ/∂y, ∂η/∂x, ∂η/∂y]`, 1/m.
+    pub inverse_jacobian: [Lane; 4],
+    /// Position, m.
+    pub position: [Lane; 2],
+}
+
+impl MappedPoint {
+    /// Value and physical gradient of a rational field from the sum `A` and its parametric slopes.
+    #[inline(always)]
+    pub(crate) fn field(&self, sum: Lane, slopes: [Lane; 2]) -> (Lane, [Lane; 2]) {
+        let value = sum * self.inverse_weight;
+        let [u, v] = [0, 1].map(|d| slopes[d] * self.inverse_weight - value * self.weight_slope[d]);
+        let [ux, uy, vx, vy] = self.inverse_jacobian;
+        (value, [u * ux + v * vx, u * uy + v * vy])
+    }
+
+    /// The adjoint of [`Self::field`] for a force and a stress: factors of the spline and of its two
+    /// parametric slopes.
+    #[inline(always)]
+    pub(crate) fn adjoint(&self, force: Lane, [x, y]: [Lane; 2]) -> (Lane, [Lane; 2]) {
+        let [ux, uy, vx, vy] = self.inverse_jacobian;
+        let [u, v] = [(x * ux + y * uy) * self.inverse_weight, (x * vx + y * vy) * self.inverse_weight];
+        (force * self.inverse_weight - u * self.weight_slope[0] - v * self.weight_slope[1], [u, v])
+    }
+}
+
+/// A point of a span that the boundary cuts.
+pub(super) struct CutPoint {
+    /// Column and row of the span.
+    pub span: [usize; 2],
+    /// Column and row of its first function.
+    pub first: FunctionIndex,
+    /// Position and box, m.
+    pub point: PointBox,
+    /// Rows by which its control points lie behind those of the patch.
+    pub lift: usize,
+}
+
+impl CutPoint {
+    /// The points of a span.
+    pub(super) fn of_span(patch: &Patch, span: [usize; 2], points: Vec<PointBox>) -> impl Iterator<Item = Self> {
+        let first = first_function(patch, span);
+        points.into_iter().map(move |point| Self { span, first, point, lift: 0 })
+    }
+}
+
+/// Eight points of one span.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct CutBatch {
+    /// Column and row of the first function of the span.
+    pub first: FunctionIndex,
+    /// Rows by which its control points lie behind those of the patch.
+    pub lift: usize,
+    /// Weights, m²; zero where there is no point.
+    pub weight: Lane,
+    /// Positions, m.
+    pub position: [Lane; 2],
+    /// Values of the basis functions in x and in y.
+    pub value: [[Lane; MAX_ORDER]; 2],
+    /// Their derivatives, 1/m.
+    pub derivative: [[Lane; MAX_ORDER]; 2],
+}
+
+impl CutBatch {
+    /// Batches of the points of a span.
+    pub(super) fn of_span(
+        patch: &Patch,
+        span: [usize; 2],
+        lift: usize,
+        points: &[PointBox],
+    ) -> impl Iterator<Item = Self> {
+        let first = first_function(patch, span);
+        points.chunks(LANES).map(move |points| {
+            let mut batch = Self { first, lift, ..Self::default() };
+            for lane in 0..LANES {
+                let (position, [width, height]) = points.get(lane).copied().unwrap_or((points[0].0, [0.0; 2]));
+                batch.weight[lane] = width * height;
+                for d in 0..2 {
+                    let functions = patch.spaces[d].shape_functions(span[d], position[d]);
+                    batch.position[d][lane] = position[d];
+                    for k in 0..MAX_ORDER {
+                        batch.value[d][k][lane] = functions.value[k];
+                        batch.derivative[d][k][lane] = functions.derivative[k];
+                    }
+                }
+            }
+            batch
+        })
+    }
+}
+
+/// Column and row of the first function of a span.
+pub(super) fn first_function(patch: &Patch, span: [usize; 2]) -> FunctionIndex {
+    [0, 1].map(|d| patch.spaces[d].spans()[span[d]].first)
 }

@@ -1,7 +1,6 @@
 //! Rational basis functions, their gradients, and what the geometry map makes of them:
 //! `R_a = N_a w_a / W` and `∂R_a = (w_a ∂N_a − R_a ∂W) / W` with `W = Σ N_b w_b`.
 
-use crate::splines::point_value::PointValue;
 use crate::splines::spline::{MAX_FUNCTIONS, SplineSpace};
 
 /// The basis functions that live at a pair of parameters; entries past `count` are zero.
@@ -69,6 +68,15 @@ impl MapPoint {
         let [[xu, xv], [yu, yv]] = self.jacobian;
         xu * yv - xv * yu
     }
+}
+
+/// A scalar field and its gradient at a position.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct PointValue {
+    /// Value.
+    pub value: f64,
+    /// Gradient, 1/m; of a function of parameters, 1/unit of the knots.
+    pub gradient: [f64; 2],
 }
 
 /// Products of the B-splines of two directions: the basis of a patch with equal weights.

@@ -1,5 +1,8 @@
-//! Degree elevation by polar forms (Ramshaw 1989): the same geometry one degree higher, as smooth as before.
+//! The same geometry on more control points: knot insertion in homogeneous coordinates, and degree elevation.
 //!
+//! # Degree elevation by polar forms (Ramshaw 1989)
+//!
+//! The geometry is one degree higher and as smooth as before.
 //! Raising the degree p by one repeats every distinct knot once more. With f the polar form (blossom) of a
 //! polynomial piece, symmetric and affine in each of its p arguments, the polar form of the same piece as a
 //! polynomial of degree p + 1 is `F(t_1 … t_(p+1)) = Σ_j f(all t but t_j)/(p + 1)`, and the new control point
@@ -8,6 +11,7 @@
 //! whatever the ratio of the spans.
 
 use super::{NurbsError, NurbsPatch};
+use crate::splines::insertion;
 use crate::splines::spline::{MAX_DEGREE, MAX_ORDER};
 
 impl NurbsPatch {
@@ -27,6 +31,40 @@ impl NurbsPatch {
                 .map(|i| elevated_point(degree, old, line, &raised[i + 1..=i + degree + 1]))
                 .collect()
         })
+    }
+
+    /// The same geometry with `new` knots inserted in a direction (0 or 1), in any order and repeated as
+    /// given.
+    ///
+    /// # Errors
+    /// If a knot is not strictly inside the patch, or appears more often than the degree afterwards.
+    pub fn insert_knots(&self, direction: usize, new: &[f64]) -> Result<Self, NurbsError> {
+        let space = &self.spaces[direction];
+        let (degree, old) = (space.degree(), space.knot_vector());
+        let mut all = [old, new].concat();
+        all.sort_by(f64::total_cmp);
+        super::check::knots(direction, degree, &all)?;
+        self.with_direction_changed(direction, degree, &all, |line| {
+            let mix = |a: f64, p: &[f64; 3], q: &[f64; 3]| [0, 1, 2].map(|c| a * p[c] + (1.0 - a) * q[c]);
+            insertion::insert_knots(space, new, line.to_vec(), mix)
+        })
+    }
+
+    /// The same geometry with every non-empty span of both directions cut into `parts` equal ones.
+    ///
+    /// # Panics
+    /// If `parts` is zero.
+    pub fn subdivide(&self, parts: usize) -> Result<Self, NurbsError> {
+        assert!(parts > 0, "a span has at least one part");
+        let mut patch = self.clone();
+        for direction in 0..2 {
+            let spans = self.spaces[direction].spans().iter();
+            let new: Vec<f64> = spans
+                .flat_map(|span| (1..parts).map(|i| span.left + span.length() * i as f64 / parts as f64))
+                .collect();
+            patch = patch.insert_knots(direction, &new)?;
+        }
+        Ok(patch)
     }
 }
 
@@ -116,5 +154,18 @@ mod tests {
             assert_eq!(patch.spaces()[1].dimension(), degree + 1);
         }
         assert!(matches!(patch.elevate(1).unwrap_err(), NurbsError::Knots { direction: 1, .. }));
+    }
+
+    #[test]
+    fn knots_outside_or_too_many_are_refused() {
+        let patch = NurbsPatch::quarter_annulus(1.0, 2.0).unwrap();
+        for bad in [0.0, 1.0, -0.5, 2.0, f64::NAN] {
+            let error = patch.insert_knots(1, &[0.5, bad]).unwrap_err();
+            assert!(matches!(error, NurbsError::Knots { direction: 1, .. }), "{error}");
+        }
+        let error = patch.insert_knots(0, &[0.5, 0.5]).unwrap_err();
+        assert!(matches!(error, NurbsError::Knots { direction: 0, .. }), "{error}");
+        assert_eq!(patch.insert_knots(1, &[0.5, 0.5]).unwrap().spaces()[1].dimension(), 5);
+        assert_eq!(patch.subdivide(4).unwrap().spaces()[0].spans().len(), 4);
     }
 }
