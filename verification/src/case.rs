@@ -48,10 +48,7 @@ pub enum Tier {
 
 impl std::fmt::Display for Tier {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Quick => "quick",
-            Self::Full => "full",
-        })
+        f.write_str(if *self == Self::Quick { "quick" } else { "full" })
     }
 }
 

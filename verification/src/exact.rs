@@ -126,13 +126,9 @@ pub trait ExactSolution: Send + Sync {
     /// `∂u_i/∂x_j`.
     fn displacement_gradient(&self, position: [f64; 2], time: f64) -> [[f64; 2]; 2];
     /// Velocity, m/s.
-    fn velocity(&self, _position: [f64; 2], _time: f64) -> [f64; 2] {
-        [0.0; 2]
-    }
+    fn velocity(&self, position: [f64; 2], time: f64) -> [f64; 2];
     /// Acceleration, m/s².
-    fn acceleration(&self, _position: [f64; 2], _time: f64) -> [f64; 2] {
-        [0.0; 2]
-    }
+    fn acceleration(&self, position: [f64; 2], time: f64) -> [f64; 2];
     /// Stress `stress[i][j]`, Pa: first Piola–Kirchhoff (component i, reference normal j); that is the Cauchy
     /// stress for small strains. It is the degraded one where a phase field is modelled.
     fn stress(&self, position: [f64; 2], time: f64) -> [[f64; 2]; 2];
@@ -141,9 +137,7 @@ pub trait ExactSolution: Send + Sync {
     /// Body force per reference volume, N/m³: `rho a − Div stress`.
     fn body_force(&self, position: [f64; 2], time: f64) -> [f64; 2];
     /// The phase field, where one is modelled.
-    fn phase(&self) -> Option<&dyn ExactPhase> {
-        None
-    }
+    fn phase(&self) -> Option<&dyn ExactPhase>;
 }
 
 /// A phase field that solves the equation of its model ([`fracture`]) exactly, with AT2 `[4 l0 (1 − k) H/Gc

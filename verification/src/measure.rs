@@ -120,13 +120,11 @@ impl Run<'_> {
                     let factor = if half { fault!("half-model-not-doubled", self.energy_factor => 1.0) } else { 1.0 };
                     return Ok(Named::Column(column, factor));
                 }
-                self.values.get(name).copied().map(Named::Number).ok_or_else(|| self.no_column(name))
+                let columns = || self.history.names.join(", ");
+                let missing = || format!("the history has no column {name:?}; it has {}", columns());
+                self.values.get(name).copied().map(Named::Number).ok_or_else(missing)
             }
         }
-    }
-
-    fn no_column(&self, column: &str) -> String {
-        format!("the history has no column {column:?}; it has {}", self.history.names.join(", "))
     }
 
     /// Increment of a column since t = 0.

@@ -48,6 +48,10 @@ pub struct Progress {
 }
 
 impl Progress {
+    fn of(simulation: &Simulation) -> Self {
+        Self { step: simulation.steps(), steps: simulation.plan().steps(), time: simulation.time() }
+    }
+
     /// Part of the steps that is taken, 0 to 1.
     pub fn fraction(&self) -> f64 {
         self.step as f64 / self.steps.max(1) as f64
@@ -148,12 +152,7 @@ impl<'a> Run<'a> {
             self.sample(simulation);
             self.picture(simulation, &frames, on_frame);
         }
-        let now = |simulation: &Simulation| Progress {
-            step: simulation.steps(),
-            steps: plan.steps(),
-            time: simulation.time(),
-        };
-        progress(now(simulation));
+        progress(Progress::of(simulation));
         while !simulation.finished() {
             timed(&mut self.record.stages.steps, || simulation.step())?;
             if simulation.steps().is_multiple_of(plan.steps_per_sample) {
@@ -161,7 +160,7 @@ impl<'a> Run<'a> {
                 simulation.watch_ledger(&sample)?;
             }
             self.picture(simulation, &frames, on_frame);
-            progress(now(simulation));
+            progress(Progress::of(simulation));
             if stop(self, simulation) {
                 return Ok(true);
             }

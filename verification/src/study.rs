@@ -18,7 +18,7 @@ mod judging;
 mod linear_field;
 mod nurbs;
 pub mod orders;
-mod patches;
+pub(crate) mod patches;
 mod pulse;
 mod random;
 mod rings;
@@ -34,6 +34,7 @@ use stability::{
 
 use fisura::dynamics::projection::Projection;
 use fisura::dynamics::total_frame::TotalFrame;
+use fisura::particles::lattice::Lattice;
 use thiserror::Error;
 
 use crate::case::Case;
@@ -54,6 +55,13 @@ pub struct Measurement {
     pub value: Option<f64>,
     /// What it is held against.
     pub reference: Option<Reference>,
+}
+
+impl Measurement {
+    fn new([variant, quantity, unit]: [&str; 3], value: impl Into<Option<f64>>, reference: Option<Reference>) -> Self {
+        let [variant, quantity, unit] = [variant, quantity, unit].map(String::from);
+        Self { variant, quantity, unit, value: value.into(), reference }
+    }
 }
 
 /// Everything a study found, or what it will measure.
@@ -105,8 +113,7 @@ impl Findings {
 
     /// Adds a dimensionless number.
     fn add(&mut self, variant: &str, quantity: &str, value: impl Into<Option<f64>>, reference: Option<Reference>) {
-        let [variant, quantity, unit] = [variant, quantity, "1"].map(String::from);
-        self.measurements.push(Measurement { variant, quantity, unit, value: value.into(), reference });
+        self.measurements.push(Measurement::new([variant, quantity, "1"], value, reference));
     }
 }
 
@@ -130,8 +137,17 @@ pub(crate) fn projected(
     frame: &TotalFrame,
     field: impl Fn([f64; 2]) -> [f64; 2] + Sync,
 ) -> Result<[Vec<f64>; 2], StudyError> {
+    projected_on(&frame.lattice, |c| frame.constraints.held(c), field)
+}
+
+/// As [`projected`], where a component is zero at the control points `held`.
+fn projected_on(
+    lattice: &Lattice,
+    held: impl Fn(usize) -> Vec<usize>,
+    field: impl Fn([f64; 2]) -> [f64; 2] + Sync,
+) -> Result<[Vec<f64>; 2], StudyError> {
     let component = |c: usize| -> Result<Vec<f64>, StudyError> {
-        let projection = Projection::new(&frame.lattice, &frame.constraints.held(c));
+        let projection = Projection::new(lattice, &held(c));
         let projection = projection.ok_or_else(|| other("the points do not determine a projection"))?;
         Ok(projection.project(|x| field(x)[c]))
     };

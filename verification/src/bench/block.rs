@@ -37,12 +37,8 @@ pub fn cracked_scene(degree: usize, points: usize, cells: usize, margin: usize) 
     let glass = Material { young_modulus: 32e9, poisson_ratio: 0.2, density: DENSITY, fracture: Some(fracture) };
     let size = SPAN * cells as f64;
     let edge = SPAN * margin as f64;
-    let plain = PlainScene::free(
-        Mesh::uniform([degree; 2], [-edge; 2], [size + 2.0 * edge; 2], [cells + 2 * margin; 2]),
-        glass,
-        points,
-    );
-    let mut scene = plain.scene();
+    let mesh = Mesh::uniform([degree; 2], [-edge; 2], [size + 2.0 * edge; 2], [cells + 2 * margin; 2]);
+    let mut scene = PlainScene::free(mesh, glass, points).scene();
     scene.analysis.safety = 0.8;
     scene.analysis.end_time = 1e-3;
     scene.output.samples = 1;

@@ -33,14 +33,12 @@ const FEWEST: usize = 20;
 #[derive(Debug, Clone, Copy)]
 struct Way(usize, Option<Transfer>);
 
-const WAYS: [Way; 6] = [
-    Way(2, Some(Transfer::Flip)),
-    Way(3, Some(Transfer::Flip)),
-    Way(2, Some(Transfer::Apic)),
-    Way(3, Some(Transfer::Apic)),
-    Way(2, None),
-    Way(3, None),
-];
+/// The ways on their meshes.
+fn ways(meshes: impl Fn(Way) -> Vec<usize>) -> impl Iterator<Item = (Way, usize)> {
+    let transfers = [Some(Transfer::Flip), Some(Transfer::Apic), None].into_iter();
+    let ways = transfers.flat_map(|transfer| [2, 3].map(|degree| Way(degree, transfer)));
+    ways.flat_map(move |way| meshes(way).into_iter().map(move |mesh| (way, mesh)))
+}
 
 impl Way {
     fn word(self) -> String {
@@ -70,13 +68,6 @@ impl Way {
     }
 }
 
-/// The errors of one run.
-struct Errors {
-    errors: Vec<(&'static str, AnswerError)>,
-    /// Closure of the ledger over the energy at t = 0.
-    closure: f64,
-}
-
 /// Times collisions of bars and of discs.
 ///
 /// # Errors
@@ -85,28 +76,42 @@ pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
     pool(1)?.install(|| {
         let mut contestants = Vec::new();
         let mut found = Vec::new();
-        for (id, way, spans, scene, errors) in bars(settings)?.into_iter().chain(discs(settings)?) {
-            contestants.push(contestant(&id, way, spans, scene)?);
-            found.push(errors);
+        for (kind, way, spans, scene, wave) in bars(settings)?.into_iter().chain(discs(settings)?) {
+            found.push((watched(&scene)?, wave));
+            contestants.push(contestant(&format!("contact/{kind}/{}/{spans}", id_of(way)), way, spans, scene)?);
         }
         let records = round_robin(contestants, settings.rounds(), settings.budget())?;
         Ok(records.iter().zip(&found).flat_map(|(record, errors)| with_errors(record, errors)).collect())
     })
 }
 
-/// Id, way, spans per length or radius, scene, errors.
-type Collision = (String, Way, usize, Scene, Errors);
+/// What collides, way, spans per length or radius, scene, speed of waves in bars.
+type Collision = (&'static str, Way, usize, Scene, Option<f64>);
+
+/// Errors by the last part of an id, of bars with the speed `wave` of their waves.
+fn errors(found: &Watched, wave: Option<f64>) -> Vec<(&'static str, AnswerError)> {
+    let off = |found: f64, exact: f64| (found / exact - 1.0).abs();
+    let exchange = "equal bars exchange their velocities in 2 L/c";
+    let of_bars = wave.map(|wave| {
+        [
+            ("rebound", AnswerError::relative("error of the rebound velocity", off(found.rebound, 1.0), exchange)),
+            ("duration", AnswerError::relative("error of the contact time", off(found.duration, 2.0 / wave), exchange)),
+        ]
+    });
+    let loss = AnswerError::relative("energy lost over that at t = 0", found.loss.abs(), "an elastic impact");
+    of_bars.into_iter().flatten().chain([("loss", loss)]).collect()
+}
 
 /// The same samples once for every error.
-fn with_errors(record: &BenchRecord, found: &Errors) -> Vec<BenchRecord> {
-    let of = |(name, error): &(&str, AnswerError)| {
+fn with_errors(record: &BenchRecord, (found, wave): &(Watched, Option<f64>)) -> Vec<BenchRecord> {
+    let of = |(name, error): (&str, AnswerError)| {
         let mut record = record.clone();
         record.id = format!("{}/{name}", record.id);
-        record.error = Some(error.clone());
+        record.error = Some(error);
         record.verify_at_most("closure of the ledger over the energy at t = 0", found.closure.abs(), CLOSURE);
         record
     };
-    found.errors.iter().map(of).collect()
+    errors(found, *wave).into_iter().map(of).collect()
 }
 
 fn contestant(id: &str, way: Way, spans: usize, scene: Scene) -> Result<Contestant<'static>, BenchError> {
@@ -117,33 +122,14 @@ fn contestant(id: &str, way: Way, spans: usize, scene: Scene) -> Result<Contesta
     Ok(Contestant { record, run: Box::new(run) })
 }
 
-/// The meshes that a way is run on: in the total frame none coarser than `least`.
-fn meshes(way: Way, all: &[usize], least: usize) -> Vec<usize> {
-    let fits = |n: &usize| way.1.is_some() || *n >= least;
-    all.iter().copied().filter(fits).collect()
-}
-
 fn bars(settings: &Settings) -> Result<Vec<Collision>, BenchError> {
     let base = settings.scene("contact/impact-equal", &[])?.scene;
     let material = &base.materials[&base.bodies[0].material];
     let wave = ElasticModuli::new(material, base.analysis.plane).dilatational_speed(material.density);
     let all: &[usize] = if settings.quick { &[8, 16, 32] } else { &[16, 32, 64, 128] };
     let all = |way: Way| if way.1.is_none() { &all[..all.len() - 1] } else { all };
-    let runs = WAYS.into_iter().flat_map(|way| meshes(way, all(way), 0).into_iter().map(move |spans| (way, spans)));
-    runs.map(|(way, spans)| {
-        let scene = bars_of(&base, way, spans);
-        let found = watched(&scene)?;
-        let off = |found: f64, exact: f64| (found / exact - 1.0).abs();
-        let exchange = "equal bars exchange their velocities in 2 L/c";
-        let errors = vec![
-            ("rebound", AnswerError::relative("error of the rebound velocity", off(found.rebound, 1.0), exchange)),
-            ("duration", AnswerError::relative("error of the contact time", off(found.duration, 2.0 / wave), exchange)),
-            ("loss", AnswerError::relative("energy lost over that at t = 0", found.loss.abs(), "an elastic impact")),
-        ];
-        let errors = Errors { errors, closure: found.closure };
-        Ok((format!("contact/bars/{}/{spans}", id_of(way)), way, spans, scene, errors))
-    })
-    .collect()
+    let runs = ways(|way| all(way).to_vec());
+    Ok(runs.map(|(way, spans)| ("bars", way, spans, bars_of(&base, way, spans), Some(wave))).collect())
 }
 
 fn id_of(way: Way) -> String {
@@ -169,18 +155,9 @@ fn bars_of(base: &Scene, way: Way, spans: usize) -> Scene {
 fn discs(settings: &Settings) -> Result<Vec<Collision>, BenchError> {
     let base = settings.scene("contact/discs-head-on", &[])?.scene;
     let all: &[usize] = if settings.quick { &[10, 20] } else { &[20, 40, 80] };
-    let runs = WAYS.into_iter().flat_map(|way| meshes(way, all, FEWEST).into_iter().map(move |cells| (way, cells)));
-    runs.map(|(way, cells)| {
-        let scene = discs_of(&base, way, cells);
-        let found = watched(&scene)?;
-        let errors = vec![(
-            "loss",
-            AnswerError::relative("energy lost over that at t = 0", found.loss.abs(), "an elastic impact"),
-        )];
-        let (spans, errors) = (cells / SPANS_PER_RADIUS, Errors { errors, closure: found.closure });
-        Ok((format!("contact/discs/{}/{spans}", id_of(way)), way, spans, scene, errors))
-    })
-    .collect()
+    let fits = |way: Way, n: usize| way.1.is_some() || n >= FEWEST;
+    let runs = ways(|way| all.iter().copied().filter(|&n| fits(way, n)).collect());
+    Ok(runs.map(|(way, cells)| ("discs", way, cells / SPANS_PER_RADIUS, discs_of(&base, way, cells), None)).collect())
 }
 
 fn discs_of(base: &Scene, way: Way, cells: usize) -> Scene {

@@ -132,15 +132,11 @@ impl MovingBlock {
         };
         again.points_to_grid();
         again.grid(0.0);
-        let difference = |d: usize| largest_difference(&again.nodes.acceleration[d], &self.nodes.acceleration[d]);
+        let pairs = |d: usize| again.nodes.acceleration[d].iter().zip(&self.nodes.acceleration[d]);
+        let difference = |d: usize| largest(pairs(d).map(|(a, b)| (a - b).abs()));
         let size = largest(self.nodes.acceleration.iter().flatten().map(|a| a.abs()));
         larger(difference(0), difference(1)) / size
     }
-}
-
-/// Largest absolute difference of two fields.
-fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
-    largest(a.iter().zip(b).map(|(a, b)| (a - b).abs()))
 }
 
 /// The scene after some steps from [`velocity`], and the length of its steps, s.

@@ -6,6 +6,7 @@ use fisura::scene::{CrackKind, CrackModel, Mesh, Side};
 use super::{BenchError, Settings};
 use crate::case::expand::CaseScene;
 use crate::extremes::larger;
+use crate::study::patches;
 use crate::study::scene::length_scale;
 
 /// Where the short spans begin in x and end in y for someone in a hurry, m: the crack starts at x = 50 mm and
@@ -100,14 +101,12 @@ pub fn with_toughness_of_mesh(case: &mut CaseScene) -> Result<(), BenchError> {
 
 /// Open knots with spans of about the given length in each part `(from, to, length)`.
 pub fn open_knots(degree: usize, parts: &[(f64, f64, f64)]) -> Vec<f64> {
-    let (start, end) = (parts[0].0, parts[parts.len() - 1].1);
-    let mut knots = vec![start; degree];
-    for &(from, to, length) in parts {
+    let ends = parts.iter().flat_map(|&(from, to, length)| {
         let spans = ((to - from) / length).round();
-        knots.extend((0..spans as usize).map(|i| from + (to - from) * (i as f64 / spans)));
-    }
-    knots.extend(std::iter::repeat_n(end, degree + 1));
-    knots
+        (0..spans as usize).map(move |i| from + (to - from) * (i as f64 / spans))
+    });
+    let last = parts[parts.len() - 1].1;
+    patches::open(degree, &ends.chain([last]).collect::<Vec<_>>())
 }
 
 #[cfg(test)]

@@ -51,10 +51,8 @@ fn share_of(scene: &Scene, run_up: usize, steps: usize) -> Result<Vec<BenchRecor
         iterations += after.iterations;
     }
     for record in [&mut whole, &mut solve] {
-        record.verify(
-            same && iterations > 0,
-            format!("the same bits both times; {iterations} iterations in {steps} steps"),
-        );
+        let answer = format!("the same bits both times; {iterations} iterations in {steps} steps");
+        record.verify(same && iterations > 0, answer);
         record.summarise();
     }
     Ok(vec![whole, solve])

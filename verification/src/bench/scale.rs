@@ -83,13 +83,8 @@ pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
     })
 }
 
-/// Forgets the largest memory of this process so far; whether the system can.
-fn forget_peak() -> bool {
-    std::fs::write("/proc/self/clear_refs", "5").is_ok()
-}
-
 fn measure(block: &Block, cells: usize, rounds: usize) -> Result<BenchRecord, BenchError> {
-    let alone = forget_peak();
+    let alone = std::fs::write("/proc/self/clear_refs", "5").is_ok(); // forgets the peak of the memory
     let mut simulation = Simulation::new(&(block.scene)(cells))?;
     advance(&mut simulation, block.run_up)?;
     let extent = simulation.extent();

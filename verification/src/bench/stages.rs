@@ -27,11 +27,6 @@ const GRIDS: usize = 20;
 /// Spans per direction of the small block on which the minimal kernel is held against the solver.
 const SMALL: usize = 16;
 
-/// Spans per direction of the blocks.
-fn cells(settings: &Settings) -> usize {
-    if settings.quick { 128 } else { 256 }
-}
-
 /// Times the phases.
 ///
 /// # Errors
@@ -46,7 +41,7 @@ pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
 
 /// All phases of one degree.
 fn phases<const P: usize>(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
-    let cells = cells(settings);
+    let cells = if settings.quick { 128 } else { 256 };
     let block = Block::new(P, POINTS, cells, 0)?;
     let moving = MovingBlock::new(P, POINTS, cells, RUN_UP)?;
     let mut contestants = sweeps::<P>(&block)?;

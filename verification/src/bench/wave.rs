@@ -20,7 +20,7 @@ use crate::exact::ExactSolution;
 use crate::exact::motion::Derived;
 use crate::exact::standing_wave::{SIZE, StandingWave};
 use crate::scene::plain::{PlainScene, ROLLERS};
-use crate::study::convergence::errors::{ErrorPoints, Squares};
+use crate::study::convergence::errors::ErrorPoints;
 use crate::study::convergence::moving::displace;
 use crate::study::projected;
 
@@ -99,7 +99,7 @@ impl Way {
         format!("p = {}, {kind}", self.degree)
     }
 
-    fn scene(self, cells: usize) -> Result<Scene, BenchError> {
+    fn scene(self, cells: usize) -> Scene {
         let plain = PlainScene {
             mesh: Mesh::uniform([self.degree; 2], [0.0; 2], SIZE, [cells; 2]),
             material: solution().material(),
@@ -111,7 +111,7 @@ impl Way {
         };
         let mut scene = plain.scene();
         (scene.analysis.frame, scene.analysis.transfer) = (self.frame, self.transfer);
-        Ok(scene)
+        scene
     }
 }
 
@@ -139,7 +139,7 @@ struct Wave {
 impl Wave {
     fn new(way: Way, cells: usize, coarsest: usize) -> Result<Self, BenchError> {
         let solution = solution();
-        let scene = way.scene(cells)?;
+        let scene = way.scene(cells);
         let start = |x: [f64; 2]| solution.displacement(x, 0.0).map(|u| AMPLITUDE * u);
         let velocity = |x: [f64; 2]| solution.velocity(x, 0.0).map(|v| AMPLITUDE * v);
         let broken = || BenchError::other("the wave cannot be started");
@@ -165,7 +165,7 @@ impl Wave {
         let step = match way.mass {
             Mass::Lumped => SAFETY * critical,
             Mass::Consistent => {
-                let coarsest_step = TotalFrame::new(&way.scene(coarsest)?).map_err(|_| broken())?.critical_step();
+                let coarsest_step = TotalFrame::new(&way.scene(coarsest)).map_err(|_| broken())?.critical_step();
                 let power = 0.5 * (way.degree + 1) as f64;
                 (SAFETY * coarsest_step * (coarsest as f64 / cells as f64).powf(power)).min(SAFETY * critical)
             }
@@ -235,11 +235,8 @@ impl Wave {
     }
 
     fn error_of_field(&self, points: &ErrorPoints, field: &[Vec<f64>; 2]) -> f64 {
-        let component = |i: usize| {
-            let exact = |x| (AMPLITUDE * self.solution.displacement(x, END)[i], [0.0; 2]);
-            points.squares(&field[i], exact)
-        };
-        (0..2).map(component).sum::<Squares>().l2()
+        let exact = |x| (self.solution.displacement(x, END).map(|u| AMPLITUDE * u), [[0.0; 2]; 2]);
+        points.vector_squares(field, exact).l2()
     }
 
     fn error_at_points(&self, frame: &UpdatedFrame) -> f64 {

@@ -20,7 +20,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::value::{Duration, Filled, Number, Positive, TransferName, Whole, Word};
-use crate::scene::fields::Item;
+use crate::scene::fields::{Item, Words};
 
 /// A family of patches.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, JsonSchema)]
@@ -126,10 +126,10 @@ pub(super) struct ConvergenceTable {
     /// The exact solution: `problem = "elastostatics"`.
     problem: String,
     /// Plane strain or plane stress.
-    #[serde(default = "plane_strain")]
+    #[serde(default = "first::<Plane>")]
     plane: Word<Plane>,
     /// The updated frame has finite kinematics, and points that cross spans.
-    #[serde(default = "total_frame")]
+    #[serde(default = "first::<Frame>")]
     frame: Word<Frame>,
     /// Transfers of the updated frame, a curve each: `transfers = ["flip", "apic"]`.
     transfers: Option<Filled<TransferName>>,
@@ -143,7 +143,7 @@ pub(super) struct ConvergenceTable {
     /// Spans per direction, level by level, `cells = [4, 8, 16, 32]` if absent.
     cells: Option<Filled<Whole<1, 4096>>>,
     /// Layout of the points.
-    #[serde(default = "gauss_layout")]
+    #[serde(default = "first::<Layout>")]
     layout: Word<Layout>,
     /// Points per span and direction, one number for each degree; p + 1 if absent.
     points: Option<Vec<Whole<1, 16>>>,
@@ -172,16 +172,9 @@ enum Refined {
     TimeStep,
 }
 
-fn plane_strain() -> Word<Plane> {
-    Word(Plane::Strain)
-}
-
-fn total_frame() -> Word<Frame> {
-    Word(Frame::Total)
-}
-
-fn gauss_layout() -> Word<Layout> {
-    Word(Layout::Gauss)
+/// The first of the words of a type.
+fn first<T: Words>() -> Word<T> {
+    Word(T::WORDS[0].1)
 }
 
 fn consistent() -> Word<Mass> {

@@ -53,12 +53,8 @@ impl Geometry {
         let h = self.points as f64 * self.spacing(PARTICLES);
         let spans = [(2.0 * self.outer / h).ceil() as usize + MARGIN, (self.outer / h).ceil() as usize + MARGIN];
         let cells = [spans[0] + MARGIN, 2 * spans[1]];
-        scene.mesh = Mesh::uniform(
-            template.mesh.degree,
-            [spans[0], spans[1]].map(|n| -(n as f64) * h),
-            cells.map(|n| n as f64 * h),
-            cells,
-        );
+        let (origin, size) = (spans.map(|n| -(n as f64) * h), cells.map(|n| n as f64 * h));
+        scene.mesh = Mesh::uniform(template.mesh.degree, origin, size, cells);
         let ring = &mut scene.bodies[0];
         let (center, inner_radius, outer_radius) = ([-self.outer, 0.0], self.inner, self.outer);
         ring.shape = Shape::Annulus { center, inner_radius, outer_radius };

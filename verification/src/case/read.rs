@@ -8,7 +8,7 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 use serde_json::{Map, Value};
 
-use super::chart::{Chart, ChartTable};
+use super::chart::Chart;
 use super::check::{self, CheckTable};
 use super::convergence::{self, ConvergenceTable};
 use super::formula::Amount;
@@ -70,7 +70,7 @@ pub(super) struct CaseTable {
     check: Vec<CheckTable>,
     /// What is drawn of the runs.
     #[serde(default)]
-    chart: Vec<ChartTable>,
+    chart: Vec<Chart>,
 }
 
 /// A changed copy of the scene, or one for each entry of a list, which are written out before it is read.
@@ -102,16 +102,10 @@ pub(super) fn case(item: &Item<'_>, path: &Path, document: &Document) -> Option<
     let checks =
         table.check.into_iter().enumerate().map(|(i, table)| check::check(table, &below(&format!("check.{i}"))));
     let checks: Vec<Option<_>> = checks.collect();
+    let set = |i: usize| item.node.at(&format!("variant.{i}.set")).and_then(Node::as_table).cloned();
     let variants = table.variant.into_iter().enumerate().map(|(i, variant)| Variant {
         name: variant.name.0,
-        set: item
-            .node
-            .at(&format!("variant.{i}.set"))
-            .and_then(Node::as_table)
-            .cloned()
-            .into_iter()
-            .flatten()
-            .collect(),
+        set: set(i).into_iter().flatten().collect(),
         energy_factor: variant.energy_factor.map(|factor| factor.0),
     });
     let values = values(table.values, item);
@@ -135,7 +129,7 @@ pub(super) fn case(item: &Item<'_>, path: &Path, document: &Document) -> Option<
         convergence: convergence.map_or(Some(None), |read| read.map(Some))?,
         rings: rings.map_or(Some(None), |read| read.map(Some))?,
         checks: checks.into_iter().collect::<Option<_>>()?,
-        charts: table.chart.into_iter().map(Chart::from).collect(),
+        charts: table.chart,
         document: document.clone(),
     })
 }

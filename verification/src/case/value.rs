@@ -13,20 +13,23 @@ use crate::scene::read::transfer;
 use crate::scene::typed::through;
 use crate::scene::units::{self, Dimension};
 
-/// A type of values: what it holds, its JSON schema, and how an item is read.
-macro_rules! value {
-    ($(#[$doc:meta])* $name:ident($held:ty), $schema:tt, $read:expr) => {
+/// Types of values: what each holds, its JSON schema, and how an item is read.
+macro_rules! values {
+    ($(
+        $(#[$doc:meta])*
+        $name:ident $([$($generics:tt)+] <$($arguments:ident),+>)? ($held:ty): $schema:tt, $read:expr;
+    )+) => {$(
         $(#[$doc])*
         #[derive(Debug, Clone, PartialEq)]
-        pub(super) struct $name(pub(super) $held);
+        pub struct $name $(<$($generics)+>)? (pub $held);
 
-        impl<'de> Deserialize<'de> for $name {
+        impl<'de $(, $($generics)+)?> Deserialize<'de> for $name $(<$($arguments),+>)? {
             fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
                 through(deserializer, $read).map(Self)
             }
         }
 
-        impl JsonSchema for $name {
+        impl $(<$($generics)+>)? JsonSchema for $name $(<$($arguments),+>)? {
             fn schema_name() -> Cow<'static, str> {
                 stringify!($name).into()
             }
@@ -39,110 +42,44 @@ macro_rules! value {
                 json_schema!($schema)
             }
         }
-    };
+    )+};
 }
 
-value!(
+values! {
     /// A string that says something.
-    Words(String), { "type": "string", "minLength": 1 }, |item| item.words()
-);
-value!(
+    Words(String): { "type": "string", "minLength": 1 }, |item| item.words();
     /// Lower-case words joined by dashes.
-    Id(String), { "type": "string", "pattern": "^[^\\sA-Z_]+$" }, read_id
-);
-value!(
+    Id(String): { "type": "string", "pattern": "^[^\\sA-Z_]+$" }, read_id;
     /// A formula of columns.
-    Column(String), { "type": "string", "minLength": 1 }, read_column
-);
-value!(
+    Column(String): { "type": "string", "minLength": 1 }, read_column;
     /// A number, or a quantity of any unit, in SI.
-    Quantity(f64), { "type": ["number", "string"] }, any_quantity
-);
-value!(
+    Quantity(f64): { "type": ["number", "string"] }, any_quantity;
     /// As [`Quantity`], above zero.
-    Uncertainty(f64), { "type": ["number", "string"] }, uncertainty
-);
-value!(
+    Uncertainty(f64): { "type": ["number", "string"] }, uncertainty;
     /// A plain number.
-    Number(f64), { "type": "number" }, |item| item.quantity(Dimension::NONE)
-);
-value!(
+    Number(f64): { "type": "number" }, |item| item.quantity(Dimension::NONE);
     /// A plain number above zero.
-    Positive(f64), { "type": "number", "exclusiveMinimum": 0 }, |item| item.positive(Dimension::NONE)
-);
-value!(
+    Positive(f64): { "type": "number", "exclusiveMinimum": 0 }, |item| item.positive(Dimension::NONE);
     /// A time above zero, s.
-    Duration(f64), { "type": ["number", "string"] }, |item| item.positive(Dimension::TIME)
-);
-value!(
+    Duration(f64): { "type": ["number", "string"] }, |item| item.positive(Dimension::TIME);
     /// A length above zero, m.
-    Length(f64), { "type": ["number", "string"] }, |item| item.positive(Dimension::LENGTH)
-);
-value!(
+    Length(f64): { "type": ["number", "string"] }, |item| item.positive(Dimension::LENGTH);
     /// A number, a quantity of any unit, or a formula.
-    AnyAmount(Amount), { "type": ["number", "string"] }, |item| amount(item, None)
-);
-value!(
+    AnyAmount(Amount): { "type": ["number", "string"] }, |item| amount(item, None);
     /// A time, or a formula.
-    Time(Amount), { "type": ["number", "string"] }, |item| amount(item, Some(Dimension::TIME))
-);
-value!(
+    Time(Amount): { "type": ["number", "string"] }, |item| amount(item, Some(Dimension::TIME));
     /// A plain number, or a formula.
-    Factor(Amount), { "type": ["number", "string"] }, |item| amount(item, Some(Dimension::NONE))
-);
-value!(
+    Factor(Amount): { "type": ["number", "string"] }, |item| amount(item, Some(Dimension::NONE));
     /// A transfer of the updated frame.
-    TransferName(Transfer),
-    { "anyOf": [{ "type": "string" }, { "type": "object", "properties": { "xpic": { "type": "integer" } } }] },
-    transfer
-);
-
-/// One of the words of a type.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Word<T>(pub(super) T);
-
-impl<'de, T: fields::Words> Deserialize<'de> for Word<T> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        through(deserializer, |item| item.word()).map(Self)
-    }
-}
-
-impl<T: fields::Words> JsonSchema for Word<T> {
-    fn schema_name() -> Cow<'static, str> {
-        "Word".into()
-    }
-
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        json_schema!({ "enum": T::WORDS.iter().map(|(word, _)| *word).collect::<Vec<_>>() })
-    }
-}
-
-/// A whole number between `MIN` and `MAX`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Whole<const MIN: usize, const MAX: usize>(pub(super) usize);
-
-impl<'de, const MIN: usize, const MAX: usize> Deserialize<'de> for Whole<MIN, MAX> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        through(deserializer, |item| item.whole(MIN, MAX)).map(Self)
-    }
-}
-
-impl<const MIN: usize, const MAX: usize> JsonSchema for Whole<MIN, MAX> {
-    fn schema_name() -> Cow<'static, str> {
-        "Whole".into()
-    }
-
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        json_schema!({ "type": "integer", "minimum": MIN, "maximum": MAX })
-    }
+    TransferName(Transfer):
+        { "anyOf": [{ "type": "string" }, { "type": "object", "properties": { "xpic": { "type": "integer" } } }] },
+        transfer;
+    /// One of the words of a type.
+    Word[T: fields::Words] <T> (T):
+        { "enum": T::WORDS.iter().map(|(word, _)| *word).collect::<Vec<_>>() }, |item| item.word();
+    /// A whole number between `MIN` and `MAX`.
+    Whole[const MIN: usize, const MAX: usize] <MIN, MAX> (usize):
+        { "type": "integer", "minimum": MIN, "maximum": MAX }, |item| item.whole(MIN, MAX);
 }
 
 /// A list with at least one entry.
@@ -187,13 +124,9 @@ fn read_column(item: &Item<'_>) -> Option<String> {
 }
 
 fn uncertainty(item: &Item<'_>) -> Option<f64> {
-    match any_quantity(item)? {
-        value if value > 0.0 => Some(value),
-        value => item.fail(
-            format!("{value} is not a valid uncertainty"),
-            "give a positive number, or remove it if it is unknown",
-        ),
-    }
+    let value = any_quantity(item)?;
+    let remedy = "give a positive number, or remove it if it is unknown";
+    if value > 0.0 { Some(value) } else { item.fail(format!("{value} is not a valid uncertainty"), remedy) }
 }
 
 fn any_quantity(item: &Item<'_>) -> Option<f64> {

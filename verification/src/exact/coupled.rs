@@ -66,12 +66,6 @@ pub struct Coupled {
     pub fracture: Fracture,
 }
 
-impl Coupled {
-    fn is_squeezed(&self) -> bool {
-        self.fracture.model != CrackModel::At2 && self.fracture.split != Split::Rankine
-    }
-}
-
 impl Motion for Coupled {
     fn material(&self) -> Material {
         Material { fracture: Some(self.fracture.clone()), ..unit_material(0.3) }
@@ -80,7 +74,7 @@ impl Motion for Coupled {
     fn displacement<T: Scalar>(&self, _: Plane, [x, y, t]: [T; 3]) -> [T; 2] {
         let mut alpha = (t * 1.2 + 0.1).sin() * 0.15 + 0.20;
         let mut beta = t * t * 0.08 + t * 0.10 + 0.15;
-        if self.is_squeezed() {
+        if self.fracture.model != CrackModel::At2 && self.fracture.split != Split::Rankine {
             (alpha, beta) = (alpha * 0.5, beta * -2.0 - 0.05);
         }
         let u = x + (x * 1.7 + y * 0.9 + 0.3).sin() * 0.15;

@@ -145,61 +145,35 @@ impl<T: Scalar> Neg for Dual<T> {
     }
 }
 
-impl<T: Scalar> Add for Dual<T> {
-    type Output = Self;
-    #[inline]
-    fn add(self, other: Self) -> Self {
-        let ([x, y, t], [ox, oy, ot]) = (self.gradient, other.gradient);
-        Self { value: self.value + other.value, gradient: [x + ox, y + oy, t + ot] }
-    }
+/// Operators with this number on the left.
+macro_rules! operators {
+    ($($operator:ident::$apply:ident($left:ident, $right:ident: $kind:ty) $result:block)+) => {
+        $(impl<T: Scalar> $operator<$kind> for Dual<T> {
+            type Output = Self;
+            #[inline]
+            fn $apply(self, $right: $kind) -> Self {
+                let $left = self;
+                $result
+            }
+        })+
+    };
 }
 
-impl<T: Scalar> Sub for Dual<T> {
-    type Output = Self;
-    #[inline]
-    fn sub(self, other: Self) -> Self {
-        let ([x, y, t], [ox, oy, ot]) = (self.gradient, other.gradient);
-        Self { value: self.value - other.value, gradient: [x - ox, y - oy, t - ot] }
+operators! {
+    Add::add(a, b: Self) {
+        let ([x, y, t], [bx, by, bt]) = (a.gradient, b.gradient);
+        Self { value: a.value + b.value, gradient: [x + bx, y + by, t + bt] }
     }
-}
-
-impl<T: Scalar> Mul for Dual<T> {
-    type Output = Self;
-    #[inline]
-    fn mul(self, other: Self) -> Self {
-        self.chain_two(other, self.value * other.value, [other.value, self.value])
+    Sub::sub(a, b: Self) { a + -b }
+    Mul::mul(a, b: Self) { a.chain_two(b, a.value * b.value, [b.value, a.value]) }
+    Div::div(a, b: Self) {
+        let value = a.value / b.value;
+        a.chain_two(b, value, [T::constant(1.0) / b.value, -value / b.value])
     }
-}
-
-impl<T: Scalar> Div for Dual<T> {
-    type Output = Self;
-    fn div(self, other: Self) -> Self {
-        let value = self.value / other.value;
-        self.chain_two(other, value, [T::constant(1.0) / other.value, -value / other.value])
-    }
-}
-
-impl<T: Scalar> Add<f64> for Dual<T> {
-    type Output = Self;
-    #[inline]
-    fn add(self, other: f64) -> Self {
-        Self { value: self.value + other, ..self }
-    }
-}
-
-impl<T: Scalar> Sub<f64> for Dual<T> {
-    type Output = Self;
-    #[inline]
-    fn sub(self, other: f64) -> Self {
-        Self { value: self.value - other, ..self }
-    }
-}
-
-impl<T: Scalar> Mul<f64> for Dual<T> {
-    type Output = Self;
-    #[inline]
-    fn mul(self, factor: f64) -> Self {
-        let [x, y, t] = self.gradient;
-        Self { value: self.value * factor, gradient: [x * factor, y * factor, t * factor] }
+    Add::add(a, b: f64) { Self { value: a.value + b, ..a } }
+    Sub::sub(a, b: f64) { a + -b }
+    Mul::mul(a, b: f64) {
+        let [x, y, t] = a.gradient;
+        Self { value: a.value * b, gradient: [x * b, y * b, t * b] }
     }
 }

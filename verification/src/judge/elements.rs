@@ -1,5 +1,7 @@
 //! Values of independent finite elements as references, extrapolated to h = 0, and their uncertainty.
 
+use serde::Deserialize;
+
 use super::curves::{AGREES, DECIDES, SAFETY, decide, doubt};
 use super::model::Plane;
 use super::submission::Submission;
@@ -7,46 +9,27 @@ use super::verdict::Comparison;
 use crate::reference::{Library, ReferenceValue};
 
 /// What the elements of a benchmark computed.
-#[derive(Debug, PartialEq)]
+#[derive(Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Elements {
     /// Folder of the values.
-    pub folder: &'static str,
+    pub folder: String,
     /// Phase-field models.
-    models: &'static [&'static str],
+    models: Vec<String>,
     /// Whether all is in plane stress.
     plane_stress: bool,
     /// Split of the energy.
-    pub split: &'static str,
+    pub split: String,
     /// l0, half of b of AT1, m.
     pub length_scale: f64,
     /// Spacing of the finest elements, m.
     finest: f64,
 }
 
-/// The test of Kalthoff and Winkler.
-pub static KALTHOFF: Elements = Elements {
-    folder: "kalthoff",
-    models: &["AT1", "AT2", "none"],
-    plane_stress: false,
-    split: "spectral",
-    length_scale: 0.75e-3,
-    finest: 0.125e-3,
-};
-/// The pre-strained strip.
-pub static STRIP: Elements = at1("spectral", 0.25e-3, 31.25e-6);
-/// The ring that breaks into pieces.
-pub static RING: Elements = at1("rankine", 0.75e-3, 0.5e-3);
-/// The crack that a hole stops.
-pub static ARREST: Elements = at1("rankine", 18.75e-6, 18.75e-6);
-
-const fn at1(split: &'static str, length_scale: f64, finest: f64) -> Elements {
-    Elements { folder: "at1-benchmarks", models: &["AT1"], plane_stress: true, split, length_scale, finest }
-}
-
 impl Elements {
     /// The value called `part/name`.
     pub fn value<'a>(&self, library: &'a Library, part: &str, name: &str) -> Option<&'a ReferenceValue> {
-        library.value(self.folder, &format!("{part}/{name}"))
+        library.value(&self.folder, &format!("{part}/{name}"))
     }
 
     /// Holds a value against its reference; without a `stated` uncertainty with that of elements of the
@@ -74,7 +57,7 @@ impl Elements {
 pub fn differences(submission: &Submission, elements: &Elements) -> Vec<String> {
     let model = &submission.model;
     let mut out = model.differences.clone();
-    if !elements.models.contains(&model.phase_field.as_str()) {
+    if !elements.models.contains(&model.phase_field) {
         out.push(format!("phase-field model {} instead of {}", model.crack_model(), elements.models[0]));
     }
     if elements.plane_stress && model.plane == Plane::Strain {
@@ -83,7 +66,7 @@ pub fn differences(submission: &Submission, elements: &Elements) -> Vec<String> 
     if model.phase_field == "none" {
         return out;
     }
-    if ![elements.split, "unknown"].contains(&model.split.as_str()) {
+    if ![elements.split.as_str(), "unknown"].contains(&model.split.as_str()) {
         out.push(format!("split {:?} instead of {:?}", model.split, elements.split));
     }
     let ours = elements.length_scale;

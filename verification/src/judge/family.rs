@@ -130,10 +130,8 @@ impl<'a> Variant<'a> {
         let here = &self.declared;
         let mut note = |differs: bool, text: String| out.extend(differs.then_some(text));
         let plane = model.plane != Plane::Unknown && model.plane != here.plane;
-        note(
-            plane,
-            format!("plane {:?} where the nearest reference has plane {:?}", model.plane, here.plane).to_lowercase(),
-        );
+        let text = format!("plane {:?} where the nearest reference has plane {:?}", model.plane, here.plane);
+        note(plane, text.to_lowercase());
         let slit = model.crack == Crack::Slit;
         let crack = |slit| if slit { "a slit" } else { "a seeded crack" };
         note(slit != here.slit, format!("{} where the nearest reference has {}", crack(slit), crack(here.slit)));

@@ -2,12 +2,12 @@
 //! length, against bilinear elements extrapolated to h = 0 (`reference-data/kalthoff`).
 
 use super::curves::{self, WIDEST};
-use super::elements::{KALTHOFF, differences};
+use super::elements::{Elements, differences};
 use super::model::Plane;
 use super::submission::Submission;
 use super::table::Curve;
 use super::verdict::{Comparison, QuantityVerdict, ReferenceUsed, Verdict};
-use super::{Judged, QUANTITIES, TIP_X, TIP_Y, balance, explained_by_difference};
+use super::{Judged, QUANTITIES, TIP_X, TIP_Y, balance, explained_by_difference, numbers};
 use crate::measure::{chord, grown};
 use crate::reference::{Library, ReferenceValue};
 use crate::scene::SceneFileError;
@@ -20,6 +20,7 @@ const LENGTHS: [u32; 4] = [5, 15, 25, 35];
 /// A submission and the reference that it is held against.
 struct Comparer<'a> {
     submission: &'a Submission,
+    elements: &'a Elements,
     library: &'a Library,
     /// `at1/plane-strain`, …
     variant: String,
@@ -50,14 +51,15 @@ pub fn judge(
         _ => "at1",
     };
     let plane = if submission.model.plane == Plane::Stress { "plane-stress" } else { "plane-strain" };
-    let comparer = Comparer { submission, library, variant: format!("{cracks}/{plane}") };
+    let elements = numbers::elements("kalthoff").expect("numbers.toml has them");
+    let comparer = Comparer { submission, elements, library, variant: format!("{cracks}/{plane}") };
     let mut quantities = comparer.energies(&curves);
     quantities.extend(comparer.path(&curves));
-    let Some(source) = library.source(KALTHOFF.folder).filter(|_| !quantities.is_empty()) else {
-        let message = format!("no reference {}/{}", KALTHOFF.folder, comparer.variant);
+    let Some(source) = library.source(&elements.folder).filter(|_| !quantities.is_empty()) else {
+        let message = format!("no reference {}/{}", elements.folder, comparer.variant);
         return Err(submission.key_error("benchmark", message, "restore reference-data"));
     };
-    let differences = differences(submission, &KALTHOFF);
+    let differences = differences(submission, elements);
     if !differences.is_empty() {
         for verdict in &mut quantities {
             verdict.comparisons.iter_mut().for_each(|row| explained_by_difference(row, true));
@@ -65,7 +67,7 @@ pub fn judge(
         }
     }
     let reference = ReferenceUsed {
-        id: format!("{}/{}", KALTHOFF.folder, comparer.variant),
+        id: format!("{}/{}", elements.folder, comparer.variant),
         label: source.citation.clone(),
         uncertainty:
             "distance of the finest of three meshes from the limit h to 0; a quarter of their spread at least, \
@@ -116,31 +118,21 @@ impl Comparer<'_> {
             let stated = self.submission.stated[TIP_X];
             if let Some(reference) = self.reference(&format!("time-at-{length}-mm")) {
                 let words = format!("time at which the crack is {length} mm long");
-                found.push(self.compared(
-                    words,
-                    "s",
-                    tip.map(|tip| tip[0]),
-                    reference,
-                    stated.zip(slowness).map(|(u, slowness)| u * slowness),
-                ));
+                let stated = stated.zip(slowness).map(|(u, slowness)| u * slowness);
+                found.push(self.compared(words, "s", tip.map(|tip| tip[0]), reference, stated));
             }
             if let Some(reference) = self.reference(&format!("angle-at-{length}-mm")) {
+                let words = format!("angle of the crack at {length} mm");
                 let angle = tip.map(|[_, x, y]| chord(SLIT, [x, y]));
                 let stated = stated.map(|u| (u / metres).atan().to_degrees());
-                found.push(self.compared(
-                    format!("angle of the crack at {length} mm"),
-                    "degree",
-                    angle,
-                    reference,
-                    stated,
-                ));
+                found.push(self.compared(words, "degree", angle, reference, stated));
             }
         }
         found
     }
 
     fn reference(&self, name: &str) -> Option<&ReferenceValue> {
-        KALTHOFF.value(self.library, &self.variant, name)
+        self.elements.value(self.library, &self.variant, name)
     }
 
     fn compared(
@@ -153,7 +145,7 @@ impl Comparer<'_> {
     ) -> QuantityVerdict {
         let mut row = Comparison { name: words.clone(), unit: unit.into(), value, ..Comparison::default() };
         let missing = "not given, not reached, or between rows more than 2 µs apart";
-        KALTHOFF.compare(&mut row, reference, self.submission.spacing, stated, missing);
+        self.elements.compare(&mut row, reference, self.submission.spacing, stated, missing);
         QuantityVerdict { quantity: words, outcome: row.outcome, comparisons: vec![row] }
     }
 }

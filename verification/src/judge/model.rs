@@ -6,10 +6,11 @@ use crate::scene::fields::Item;
 use crate::scene::units::Dimension;
 
 /// Plane state as declared.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Plane {
     /// Plane strain.
+    #[default]
     Strain,
     /// Plane stress.
     Stress,
@@ -18,10 +19,11 @@ pub enum Plane {
 }
 
 /// How the initial crack is made.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Crack {
     /// A history field.
+    #[default]
     Seeded,
     /// A prescribed phase field.
     PhaseField,
@@ -31,8 +33,8 @@ pub enum Crack {
     Unknown,
 }
 
-/// What was modelled, SI units.
-#[derive(Debug, Clone, PartialEq)]
+/// What was modelled, SI units; the default is that of closed forms, which ask for no model.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Model {
     /// Plane state.
     pub plane: Plane,
@@ -58,25 +60,6 @@ pub struct Model {
     pub thickness: Option<f64>,
     /// What else differs from the benchmark, in words.
     pub differences: Vec<String>,
-}
-
-impl Default for Model {
-    fn default() -> Self {
-        Self {
-            plane: Plane::Strain,
-            traction: None,
-            crack: Crack::Seeded,
-            split: "spectral".into(),
-            phase_field: "AT2".into(),
-            tensile_strength: None,
-            softening: None,
-            length_scale: None,
-            residual_stiffness: 0.0,
-            half: false,
-            thickness: None,
-            differences: Vec::new(),
-        }
-    }
 }
 
 impl Model {

@@ -97,12 +97,9 @@ impl Submission {
             let problem = Problem { key: String::new(), location: None, message, remedy: remedy.into() };
             Sources::new(&name, "").error(&[problem])
         };
-        let bytes = foreign::read(folder, SUBMISSION, MOST_BYTES).map_err(|e| {
-            whole(
-                format!("cannot be read: {e}"),
-                "give a folder with a submission.toml; `judge --new plate` writes one",
-            )
-        })?;
+        let remedy = "give a folder with a submission.toml; `judge --new plate` writes one";
+        let bytes = foreign::read(folder, SUBMISSION, MOST_BYTES);
+        let bytes = bytes.map_err(|e| whole(format!("cannot be read: {e}"), remedy))?;
         let text = String::from_utf8(bytes)
             .map_err(|_| whole("not UTF-8 text".into(), "save the file in the encoding UTF-8"))?;
         Self::parse(&name, text.trim_start_matches('\u{feff}'))
@@ -270,7 +267,7 @@ fn values(
 ) -> Option<Vec<(String, f64)>> {
     let asked = super::numbers::values(benchmark);
     item.table(|fields| {
-        let given = |a: &Asked| Some((a.name.clone(), fields.maybe(&a.name, |item| read(item, a.dimension))?));
+        let given = |a: &Asked| Some((a.name.clone(), fields.maybe(&a.name, |item| read(item, a.dimension()))?));
         Some(asked.iter().filter_map(given).collect())
     })
 }

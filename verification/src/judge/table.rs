@@ -251,12 +251,8 @@ impl File {
             let value = if none { f64::NAN } else { value * mapping.scale + mapping.offset };
             if !(value.is_finite() || (value.is_nan() && !finite)) {
                 let message = format!("{word} is no finite number, in the column of {}", mapping.key);
-                return Err(self.error(
-                    at,
-                    column,
-                    message,
-                    "only a tip may be missing; end the curve where the run ended",
-                ));
+                let remedy = "only a tip may be missing; end the curve where the run ended";
+                return Err(self.error(at, column, message, remedy));
             }
             if increasing && value <= last {
                 let message = format!("the time {word} does not increase");

@@ -16,13 +16,13 @@ pub fn template(benchmark: &str) -> String {
         "kalthoff" => return head + KALTHOFF + CURVES,
         _ => {}
     }
-    let rows = values(benchmark).into_iter().map(|a| {
+    let rows = values(benchmark).iter().map(|a| {
         let example = if a.unit == "1" { "0.0".to_string() } else { format!("\"0.0 {}\"", a.unit) };
         format!("{} = {example} # {}\n", a.name, a.what)
     });
     let model = elements(benchmark).map(|elements| {
         let l0 = (1e3 * elements.length_scale).to_string();
-        AT1.replace("@split", elements.split).replace("@l0", &l0)
+        AT1.replace("@split", &elements.split).replace("@l0", &l0)
     });
     head + &model.unwrap_or_default() + "\n[values]\n" + &rows.collect::<String>()
 }

@@ -33,6 +33,13 @@ impl Table {
         Self { names: names.iter().map(|n| n.as_ref().to_string()).collect(), columns: vec![Vec::new(); names.len()] }
     }
 
+    /// A table of these rows.
+    pub fn of_rows<const N: usize>(names: &[&str; N], rows: impl IntoIterator<Item = [f64; N]>) -> Self {
+        let mut table = Self::new(names);
+        rows.into_iter().for_each(|row| table.push(&row));
+        table
+    }
+
     /// Appends a row; `row` has one value per column.
     pub fn push(&mut self, row: &[f64]) {
         assert_eq!(row.len(), self.columns.len(), "a row has one value per column");

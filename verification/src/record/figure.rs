@@ -185,6 +185,11 @@ impl FigureBody {
     pub fn over_time(label: &str, curves: Vec<Curve>, regions: Vec<Region>) -> Self {
         Self::chart([Axis::linear("time (µs)"), Axis::linear(label)], curves, regions)
     }
+
+    /// A picture of the phase field, of as many `pixels`.
+    pub fn phase_field(series: String, pixels: [usize; 2]) -> Self {
+        Self::Field { series, pixels, label: "phase field c".into(), range: [0.0, 1.0] }
+    }
 }
 
 /// One figure of the report.

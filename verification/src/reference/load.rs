@@ -119,12 +119,8 @@ impl SourceReader {
         let unit = Unit::read(&entry.unit, None).map_err(self.unit_error(spanned, "[[value]] unit"))?;
         if let Some(uncertainty) = entry.uncertainty.filter(|u| !(u.is_finite() && *u > 0.0)) {
             let message = format!("{uncertainty} is not a valid uncertainty");
-            return Err(self.error(
-                spanned,
-                "[[value]] uncertainty",
-                message,
-                "give a positive number, or remove it if it is unknown",
-            ));
+            let remedy = "give a positive number, or remove it if it is unknown";
+            return Err(self.error(spanned, "[[value]] uncertainty", message, remedy));
         }
         let uncertainty = entry.uncertainty.map(|u| unit.to_si(u)).transpose();
         Ok(ReferenceValue {

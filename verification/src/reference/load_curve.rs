@@ -100,12 +100,8 @@ impl SourceReader {
             ("max_gap", entry.max_gap.unwrap_or(0.0)),
         ];
         if let Some((key, value)) = parts.iter().find(|(_, v)| !v.is_finite() || *v < 0.0) {
-            return Err(self.error(
-                spanned,
-                key,
-                format!("{value} is not a valid value"),
-                "give a finite number of at least 0",
-            ));
+            let message = format!("{value} is not a valid value");
+            return Err(self.error(spanned, key, message, "give a finite number of at least 0"));
         }
         if entry.uncertainty_note.trim().is_empty() {
             let remedy = "state how the uncertainty was estimated, or that it is unknown";

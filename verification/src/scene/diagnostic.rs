@@ -93,8 +93,8 @@ impl Sources {
         let location = problem.location.clone().unwrap_or(Location::new(0, 0..0));
         let source = self.0[location.source.min(self.0.len() - 1)].clone();
         let text = &source.text;
-        let start = floor_boundary(text, location.start);
-        let end = floor_boundary(text, location.end).max(start);
+        let start = text.floor_char_boundary(location.start);
+        let end = text.floor_char_boundary(location.end).max(start);
         let line_start = text[..start].rfind('\n').map_or(0, |i| i + 1);
         SceneDiagnostic {
             file: source.name.clone(),
@@ -122,11 +122,6 @@ impl Sources {
         }
         SceneFileError { diagnostics }
     }
-}
-
-/// Largest character boundary of `text` not above `index`.
-fn floor_boundary(text: &str, index: usize) -> usize {
-    (0..=index.min(text.len())).rev().find(|i| text.is_char_boundary(*i)).unwrap_or(0)
 }
 
 /// One error or warning with its place.

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use serde::{Deserialize, Serialize};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -11,19 +12,23 @@ use super::diagnostic::{Location, Problem, SceneDiagnostic, SceneFileError, Seve
 /// Largest number of syntax errors reported for one file.
 const MOST_SYNTAX_ERRORS: usize = 10;
 
-/// A value and its place.
-#[derive(Debug, Clone, PartialEq)]
+/// A value and its place; without it for serde.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
 pub struct Node {
     /// The value.
     pub value: Value,
     /// Where the value stands; the header for a table with one, `None` for the document itself.
+    #[serde(skip)]
     pub location: Option<Location>,
     /// Where its key stands; `None` for array entries.
+    #[serde(skip)]
     pub key_location: Option<Location>,
 }
 
 /// A TOML value.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
 pub enum Value {
     /// String.
     String(String),
@@ -70,10 +75,8 @@ impl Node {
         match &self.value {
             Value::Array(array) => format!("[{}]", joined(array.iter().map(Self::canonical).collect())),
             Value::Table(table) => {
-                format!(
-                    "{{{}}}",
-                    joined(table.iter().map(|(key, node)| format!("{key} = {}", node.canonical())).collect())
-                )
+                let entries = table.iter().map(|(key, node)| format!("{key} = {}", node.canonical()));
+                format!("{{{}}}", joined(entries.collect()))
             }
             scalar => format!("{scalar:?}"),
         }

@@ -253,11 +253,6 @@ pub struct Fields<'a> {
 }
 
 impl<'a> Fields<'a> {
-    /// The table itself.
-    pub fn item(&self) -> &Item<'a> {
-        &self.item
-    }
-
     /// The value of a key, if it is there.
     pub fn get(&self, key: &str) -> Option<Item<'a>> {
         let mut asked = self.asked.borrow_mut();

@@ -99,40 +99,32 @@ fn parse_value(text: &str, source: usize, offset: usize) -> Result<Node, (Locati
 
 /// Puts `new` at `keys[at..]` below `node`; message and remedy if the path does not lead there.
 fn set(node: &mut Node, keys: &[&str], at: usize, new: Node) -> Result<(), (String, String)> {
-    let key = keys[at];
-    let here = keys[..at].join(".");
-    let last = at + 1 == keys.len();
-    let kind = node.kind();
+    let Some(&key) = keys.get(at) else {
+        *node = new;
+        return Ok(());
+    };
+    let (here, kind) = (keys[..at].join("."), node.kind());
     match &mut node.value {
         Value::Table(table) => {
-            if last {
-                table.insert(key.to_string(), new);
-                return Ok(());
+            let next = keys.get(at + 1).filter(|_| !table.contains_key(key));
+            if let Some(next) = next.filter(|next| next.parse::<usize>().is_ok()) {
+                let path = keys[..=at].join(".");
+                return Err((format!("{path} is not in the file, so it has no entry {next}"), entry_remedy(0)));
             }
-            if !table.contains_key(key) {
-                let next = keys[at + 1];
-                if next.parse::<usize>().is_ok() {
-                    let path = keys[..=at].join(".");
-                    return Err((format!("{path} is not in the file, so it has no entry {next}"), entry_remedy(0)));
-                }
-                let mut child = Node::new(Value::Table(BTreeMap::new()), new.key_location.clone());
-                child.key_location.clone_from(&new.key_location);
-                table.insert(key.to_string(), child);
-            }
-            table.get_mut(key).map_or(Ok(()), |child| set(child, keys, at + 1, new))
+            let place = &new.key_location;
+            let empty =
+                || Node { value: Value::Table(BTreeMap::new()), location: place.clone(), key_location: place.clone() };
+            set(table.entry(key.to_string()).or_insert_with(empty), keys, at + 1, new)
         }
         Value::Array(array) => {
             let count = array.len();
-            let entry = key.parse::<usize>().ok().and_then(|i| array.get_mut(i));
-            match entry {
-                Some(child) if last => *child = new,
-                Some(child) => return set(child, keys, at + 1, new),
+            match key.parse::<usize>().ok().and_then(|i| array.get_mut(i)) {
+                Some(child) => set(child, keys, at + 1, new),
                 None => {
                     let message = format!("{here} is an array with {count} entries and has no entry {key:?}");
-                    return Err((message, entry_remedy(count)));
+                    Err((message, entry_remedy(count)))
                 }
             }
-            Ok(())
         }
         _ => Err((format!("{here} is {kind}, so it has no key {key:?}"), format!("set {here} itself"))),
     }

@@ -10,7 +10,7 @@ use serde::de::{DeserializeOwned, Deserializer, Error as _};
 use serde_path_to_error::Segment;
 
 use super::diagnostic::Problem;
-use super::document::{Node, Value, join};
+use super::document::{Node, join};
 use super::fields::{Item, Problems};
 use super::suggest::hint;
 
@@ -47,7 +47,7 @@ pub fn through<'de, D: Deserializer<'de>, T>(
     deserializer: D,
     read: impl FnOnce(&Item<'_>) -> Option<T>,
 ) -> Result<T, D::Error> {
-    let node = located_nowhere(toml::Value::deserialize(deserializer)?);
+    let node = Node::deserialize(deserializer)?;
     let problems = Problems::default();
     let found = read(&Item::new(&node, "", &problems));
     match (problems.into_inner().into_iter().next(), found) {
@@ -61,29 +61,7 @@ pub fn through<'de, D: Deserializer<'de>, T>(
 
 /// A value without its place.
 pub fn plain(node: &Node) -> toml::Value {
-    match &node.value {
-        Value::String(text) | Value::Datetime(text) => toml::Value::String(text.clone()),
-        Value::Integer(i) => toml::Value::Integer(*i),
-        Value::Float(x) => toml::Value::Float(*x),
-        Value::Boolean(b) => toml::Value::Boolean(*b),
-        Value::Array(entries) => toml::Value::Array(entries.iter().map(plain).collect()),
-        Value::Table(table) => toml::Value::Table(table.iter().map(|(key, node)| (key.clone(), plain(node))).collect()),
-    }
-}
-
-fn located_nowhere(value: toml::Value) -> Node {
-    let value = match value {
-        toml::Value::String(text) => Value::String(text),
-        toml::Value::Integer(i) => Value::Integer(i),
-        toml::Value::Float(x) => Value::Float(x),
-        toml::Value::Boolean(b) => Value::Boolean(b),
-        toml::Value::Datetime(date) => Value::Datetime(date.to_string()),
-        toml::Value::Array(entries) => Value::Array(entries.into_iter().map(located_nowhere).collect()),
-        toml::Value::Table(table) => {
-            Value::Table(table.into_iter().map(|(key, value)| (key, located_nowhere(value))).collect())
-        }
-    };
-    Node::new(value, None)
+    toml::Value::try_from(node).expect("a tree of TOML values is one")
 }
 
 fn segment(segment: &Segment) -> Option<String> {

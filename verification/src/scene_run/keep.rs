@@ -77,11 +77,7 @@ pub fn run_scene_kept(
     match run.advance(&mut simulation, progress, on_frame, &mut stop) {
         Ok(true) => match keeper.failed {
             Some(error) => Err(error),
-            None => Ok(Outcome::Interrupted(Progress {
-                step: simulation.steps(),
-                steps: simulation.plan().steps(),
-                time: simulation.time(),
-            })),
+            None => Ok(Outcome::Interrupted(Progress::of(&simulation))),
         },
         ended => Ok(Outcome::Ended(Box::new(run.finish(Some(&simulation), ended.err(), Some(&keeper))))),
     }

@@ -34,8 +34,8 @@ pub fn of_case(case: &Case, finished: &[FinishedScene]) -> (Vec<Figure>, Vec<(St
         let mut curves = Vec::new();
         for run in finished {
             let name = &run.case_scene.name;
-            let stem =
-                series_stem(case, &if name.is_empty() { wanted.id.clone() } else { format!("{name}-{}", wanted.id) });
+            let own = if name.is_empty() { wanted.id.0.clone() } else { format!("{name}-{}", wanted.id.0) };
+            let stem = series_stem(case, &own);
             let Ok(table) = rows(wanted, run) else { continue }; // it broke down before it started
             for (drawn, column) in wanted.curves.iter().zip(&table.names[1..]) {
                 let style = if drawn.exact { CurveStyle::Reference } else { CurveStyle::Line };
@@ -45,8 +45,8 @@ pub fn of_case(case: &Case, finished: &[FinishedScene]) -> (Vec<Figure>, Vec<(St
             }
             series.push((stem, table));
         }
-        let [x, y] = wanted.axes.each_ref().map(String::as_str);
-        figures.push(chart(case, &wanted.id, &wanted.title, &wanted.caption, [x, y], curves));
+        let [x, y] = wanted.axes.each_ref().map(|label| label.0.as_str());
+        figures.push(chart(case, &wanted.id.0, &wanted.title.0, &wanted.caption, [x, y], curves));
     }
     (figures, series)
 }
@@ -55,7 +55,7 @@ pub fn of_case(case: &Case, finished: &[FinishedScene]) -> (Vec<Figure>, Vec<(St
 fn rows(wanted: &Chart, run: &FinishedScene) -> Result<Table, String> {
     let run = run.as_run();
     let formulas = std::iter::once(&wanted.x).chain(wanted.curves.iter().map(|curve| &curve.column));
-    let columns = formulas.map(|formula| run.column(formula)).collect::<Result<Vec<_>, _>>()?;
+    let columns = formulas.map(|formula| run.column(&formula.0)).collect::<Result<Vec<_>, _>>()?;
     let names: Vec<String> = (0..columns.len()).map(|i| if i == 0 { "x".into() } else { format!("y{i}") }).collect();
     let every = columns[0].len().div_ceil(MOST_ROWS).max(1);
     let thinned = columns.into_iter().map(|column| column.into_iter().step_by(every).collect());

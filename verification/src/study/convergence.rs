@@ -78,16 +78,15 @@ pub(super) fn study(case: &Case, _scenes: &[CaseScene], findings: &mut Findings)
         }
     }
     let norm = |&(quantity, _): &(&str, usize)| Norm { quantity: quantity.into(), unit: "1".into(), floor: FLOOR };
+    let named = format!("{}, {}", setup.problem, words_of_patch(setup.patch));
     let study = Convergence {
-        suite: case.suite.clone(),
-        stem: format!("{}-{}", case.suite, case.name),
-        title: title(case, setup),
+        title: if case.label.is_empty() { named } else { case.label.clone() },
         caption: caption(setup, &problem),
-        deviations: case.deviations.clone(),
         theory: words_of_theory(setup, &problem),
         refined: refined(setup),
         norms: norms.iter().map(norm).collect(),
         curves,
+        ..Convergence::of(case)
     };
     study.add_to(findings);
     Ok(())
@@ -156,14 +155,6 @@ fn words_of_theory(setup: &ConvergenceSetup, problem: &Problem) -> String {
         _ => "best approximation by splines: p + 1 in L2, p in H1",
     }
     .into()
-}
-
-fn title(case: &Case, setup: &ConvergenceSetup) -> String {
-    if case.label.is_empty() {
-        format!("{}, {}", setup.problem, words_of_patch(setup.patch))
-    } else {
-        case.label.clone()
-    }
 }
 
 fn words_of_patch(family: PatchFamily) -> &'static str {

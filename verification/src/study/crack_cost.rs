@@ -100,19 +100,8 @@ impl Setting {
         let bar = PlainScene::unit_bar(mesh, Mass::Lumped);
         let scene = PlainScene { held: vec![], layout: Layout::Gauss, points: self.points, ..bar }.scene();
         let lattice = Lattice::new(&Patch::new(&scene.mesh), &scene.bodies[0]);
-        let grid = lattice.grid;
-        let mut matrix = Stencil::zeros(grid, lattice.degree);
-        add_form(&mut matrix, &lattice, Integrand::Mass, &Constant(1.0));
-        add_form(&mut matrix, &lattice, Integrand::Diffusion, &Constant(4.0));
-        let surface = matrix.clone();
-        add_form(&mut matrix, &lattice, Integrand::Mass, &self.strengths(&lattice, broken));
-        let factor = SparseCholesky::default().factor(&matrix, &[]);
-        let factor = factor.ok_or_else(|| other("the matrix is not positive definite"))?;
-        let mut phase = grid.zeros();
-        factor.solve(&lattice.integrate(|_, _, _| 1.0), &mut phase);
-        let (mut damage, mut image) = (grid.zeros(), grid.zeros());
-        grid.indices().for_each(|at| damage[at] = 1.0 - phase[at]);
-        Ok(surface.apply(&damage, &mut image) / 4.0 / (HEIGHT * self.span))
+        let (_, energy) = cracked(&lattice, &[], Some(self.strengths(&lattice, broken)))?;
+        Ok(energy / (HEIGHT * self.span))
     }
 
     /// B at the points: rows are numbered by the order of their points along x, from the middle.
@@ -131,8 +120,33 @@ impl Setting {
     }
 }
 
+/// The phase field, with l0 = 1, that is zero at the control points `held` and small at points of large B, if
+/// `strengths` has any: its control values, and its surface energy over Gc.
+pub(super) fn cracked(
+    lattice: &Lattice,
+    held: &[usize],
+    strengths: Option<PerPoint>,
+) -> Result<(Vec<f64>, f64), StudyError> {
+    let grid = lattice.grid;
+    let mut matrix = Stencil::zeros(grid, lattice.degree);
+    add_form(&mut matrix, lattice, Integrand::Mass, &Constant(1.0));
+    add_form(&mut matrix, lattice, Integrand::Diffusion, &Constant(4.0));
+    let surface = matrix.clone();
+    if let Some(strengths) = strengths {
+        add_form(&mut matrix, lattice, Integrand::Mass, &strengths);
+    }
+    let factor = SparseCholesky::default().factor(&matrix, held);
+    let factor = factor.ok_or_else(|| other("the matrix is not positive definite"))?;
+    let mut phase = grid.zeros();
+    factor.solve(&lattice.integrate(|_, _, _| 1.0), &mut phase);
+    let (mut damage, mut image) = (grid.zeros(), grid.zeros());
+    grid.indices().for_each(|at| damage[at] = 1.0 - phase[at]);
+    let energy = surface.apply(&damage, &mut image) / 4.0;
+    Ok((phase, energy))
+}
+
 /// A coefficient for each point.
-struct PerPoint(Vec<Lane>);
+pub(super) struct PerPoint(Vec<Lane>);
 
 impl PointCoefficients for PerPoint {
     fn span(&self, first: usize, weights: &[Lane], out: &mut [Lane]) -> bool {

@@ -4,19 +4,16 @@
 //! The line lies on knots repeated p times, where splines are continuous and no more, as the profile is. With
 //! `e = 1 − c` the surface energy is `Gc/(4 l0) eᵀ (M + 4 l0² D) e` on the matrices of the phase field.
 
-use fisura::linear_algebra::cholesky::SparseCholesky;
-use fisura::linear_algebra::stencil::Stencil;
 use fisura::particles::lattice::Lattice;
-use fisura::phase_field::assembly::{Constant, Integrand, add_form};
 use fisura::scene::{Mass, Mesh};
 use fisura::splines::patch::Patch;
 
-use super::{Case, CaseScene, Findings, StudyError, exact, other};
+use super::crack_cost::cracked;
+use super::patches::open;
+use super::{Case, CaseScene, Findings, StudyError, exact};
 use crate::extremes::largest;
 use crate::scene::plain::PlainScene;
 
-/// Length scale l0, m.
-const LENGTH: f64 = 1.0;
 /// Half width and height of the body, in l0: exp(−12) of the profile is cut off.
 const HALF_WIDTH: usize = 24;
 const HEIGHT: f64 = 2.0;
@@ -38,35 +35,23 @@ pub(super) fn study(_case: &Case, _scenes: &[CaseScene], findings: &mut Findings
 /// Energy per unit of length over Gc, and the largest error of c at a knot.
 fn crack(degree: usize, per_length: usize) -> Result<[f64; 2], StudyError> {
     let half = HALF_WIDTH * per_length;
-    let at = |i: usize| (i as f64 - half as f64) * LENGTH / per_length as f64;
-    let mut x = vec![at(0); degree];
-    for i in 0..=2 * half {
-        x.extend(vec![at(i); if i == half { degree } else { 1 }]);
-    }
-    x.extend(vec![at(2 * half); degree]);
+    let at = |i: usize| (i as f64 - half as f64) / per_length as f64;
+    let knots = (0..=2 * half).flat_map(|i| vec![at(i); if i == half { degree } else { 1 }]);
+    let x = open(degree, &knots.collect::<Vec<_>>());
     let rows = Mesh::uniform([degree; 2], [0.0; 2], [1.0, HEIGHT], [1, 2]).knots[1].clone();
     let mesh = Mesh::of_knots([degree; 2], [x, rows]);
     let scene = PlainScene { held: vec![], ..PlainScene::unit_bar(mesh, Mass::Lumped) }.scene();
     let patch = Patch::new(&scene.mesh);
     let lattice = Lattice::new(&patch, &scene.bodies[0]);
     let grid = lattice.grid;
-    let mut matrix = Stencil::zeros(grid, lattice.degree);
-    add_form(&mut matrix, &lattice, Integrand::Mass, &Constant(1.0));
-    add_form(&mut matrix, &lattice, Integrand::Diffusion, &Constant(4.0 * LENGTH * LENGTH));
     // The one column of control points that decides the field on x = 0.
     let middle = (grid.columns - 1) / 2;
     let held: Vec<usize> = (0..grid.rows).map(|row| grid.index(middle, row)).collect();
-    let factor = SparseCholesky::default().factor(&matrix, &held);
-    let factor = factor.ok_or_else(|| other("the matrix is not positive definite"))?;
-    let mut phase = grid.zeros();
-    factor.solve(&lattice.integrate(|_, _, _| 1.0), &mut phase);
-    let (mut broken, mut image) = (grid.zeros(), grid.zeros());
-    grid.indices().for_each(|at| broken[at] = 1.0 - phase[at]);
-    let energy = matrix.apply(&broken, &mut image) / (4.0 * LENGTH) / HEIGHT;
-    let exact = |x: f64| 1.0 - (-x.abs() / (2.0 * LENGTH)).exp();
+    let (phase, energy) = cracked(&lattice, &held, None)?;
+    let exact = |x: f64| 1.0 - (-x.abs() / 2.0).exp();
     let error = |i: usize| {
         let value = patch.evaluate(&phase, [at(i), 0.5 * HEIGHT]).map_or(f64::NAN, |v| v.value);
         (value - exact(at(i))).abs()
     };
-    Ok([energy, largest((0..=2 * half).map(error))])
+    Ok([energy / HEIGHT, largest((0..=2 * half).map(error))])
 }

@@ -49,15 +49,13 @@ pub(super) fn study(case: &Case, _scenes: &[CaseScene], findings: &mut Findings)
     }
     let norm = |mode| Norm { quantity: format!("frequency error of mode {mode}"), unit: "1".into(), floor: FLOOR };
     let study = Convergence {
-        suite: case.suite.clone(),
-        stem: format!("{}-{}", case.suite, case.name),
         title: "Frequencies of a bar held at both ends".into(),
         caption: "A strip one span high between rollers, Poisson's ratio zero; relative errors.".into(),
-        deviations: case.deviations.clone(),
         theory: "eigenvalues converge twice as fast as functions in H1: 2 p; row sums leave order 2".into(),
         refined: Refined::Mesh { dimensions: 1 },
         norms: (1..=MODES).map(norm).collect(),
         curves,
+        ..Convergence::of(case)
     };
     study.add_to(findings);
     Ok(())

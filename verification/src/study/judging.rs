@@ -6,8 +6,10 @@
 //! that passes everything ends the study.
 
 use std::collections::BTreeMap;
+use std::sync::LazyLock;
 
 use fisura::scene::{Mesh, Scene};
+use serde::Deserialize;
 
 use super::{Findings, StudyError, exact, other};
 use crate::case::expand::CaseScene;
@@ -15,7 +17,7 @@ use crate::case::{Case, Check};
 use crate::extremes::largest;
 use crate::measure::{Run, measure};
 use crate::output::history::Table;
-use crate::record::{Accept, Discretisation, Limit, Record, Reference, ReferenceKind, Status, worst};
+use crate::record::{Accept, Discretisation, Limit, Record, Reference, Side, Status, worst};
 use crate::reference::{Library, ReferenceBand, ReferenceCurve, relative_rms};
 use crate::scene::plain::PlainScene;
 use crate::study::orders::observed_order;
@@ -71,78 +73,56 @@ fn of_accept(accept: Accept) -> Record {
     Record { accept, ..Record::default() }
 }
 
+/// What `templates/verdicts.toml` has.
+#[derive(Deserialize)]
+struct Verdicts {
+    known: Vec<Known>,
+}
+
+/// A value whose verdict is known, and what it is held against.
+#[derive(Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct Known {
+    value: Option<f64>,
+    unit: String,
+    min: Option<f64>,
+    max: Option<f64>,
+    reference: Option<f64>,
+    side: Side,
+    uncertainty: Option<f64>,
+    discretisation: Option<f64>,
+    limited: bool,
+    expected: Status,
+}
+
+static VERDICTS: LazyLock<Verdicts> = LazyLock::new(|| {
+    toml::from_str(include_str!("../../templates/verdicts.toml"))
+        .expect("verdicts.toml lists known verdicts; every run of the study reads it")
+});
+
+impl Known {
+    /// Whether the verdict is right.
+    fn is_right(&self) -> bool {
+        let is_compared = self.reference.or(self.uncertainty).is_some();
+        let reference = Reference { side: self.side, uncertainty: self.uncertainty, ..Reference::default() };
+        let limit = Limit { min: Some(20.0), max: Some(30.0), why: String::new(), regression: false };
+        let mut record = Record {
+            value: self.value,
+            unit: self.unit.clone(),
+            reference: is_compared.then_some(Reference { value: self.reference, ..reference }),
+            discretisation: self.discretisation.map(|value| Discretisation { value, from: String::new() }),
+            limit: self.limited.then_some(limit),
+            ..of_accept(bounds(self.min, self.max))
+        };
+        record.decide();
+        record.status == self.expected
+    }
+}
+
 /// Whether each of some statuses is right.
 fn verdicts(base: &Check) -> Vec<bool> {
     use Status::{Error, Fail, Info, KnownLimit, Pass};
-    let (one, two) = (Some(1.0), Some(2.0));
-    let bounded = [
-        (Some(1.5), one, two, Pass),
-        (one, one, two, Pass),
-        (two, one, two, Pass),
-        (Some(0.9), one, two, Fail),
-        (Some(2.1), one, two, Fail),
-        (Some(-1.5), one, two, Fail),
-        (Some(-1.5), Some(-2.0), Some(-1.0), Pass),
-        (Some(0.9), one, None, Fail),
-        (Some(2.1), one, None, Pass),
-        (Some(2.1), None, two, Fail),
-        (Some(-2.1), None, two, Pass),
-        (None, one, two, Fail),
-        (None, one, None, Fail),
-        (None, None, two, Fail),
-        (Some(f64::NAN), one, two, Fail),
-        (Some(f64::INFINITY), one, None, Fail),
-        (Some(f64::NEG_INFINITY), None, two, Fail),
-        (Some(5.0), None, None, Info),
-        (None, None, None, Info),
-    ];
-    let status = |mut record: Record| {
-        record.decide();
-        record.status
-    };
-    let of_bounds = |(value, min, max, expected)| status(Record { value, ..of_accept(bounds(min, max)) }) == expected;
-    let mut right: Vec<bool> = bounded.into_iter().map(of_bounds).collect();
-    // reference 10, its uncertainty, bounds, and a limit from 20 to 30
-    let limit = Limit { min: Some(20.0), max: Some(30.0), why: String::new(), regression: false };
-    for (value, uncertainty, accept, limited, expected) in [
-        (10.1, Some(0.2), bounds(None, None), false, Pass),
-        (10.3, Some(0.2), bounds(None, None), false, Fail),
-        (9.7, Some(0.2), bounds(None, None), true, Fail),
-        (25.0, Some(0.2), bounds(None, None), true, KnownLimit),
-        (31.0, Some(0.2), bounds(None, None), true, Fail),
-        (10.3, None, bounds(Some(9.6), Some(10.4)), false, Pass),
-        (10.3, None, bounds(Some(10.2), Some(10.4)), false, Fail),
-        (10.3, None, bounds(Some(9.0), Some(11.0)), false, Info),
-        (25.0, None, bounds(Some(9.0), Some(11.0)), true, KnownLimit),
-        (25.0, None, bounds(Some(9.0), Some(26.0)), true, Info),
-        (10.3, Some(0.6), bounds(None, None), false, Info),
-    ] {
-        let reference = by_hand(10.0).map(|reference| Reference { uncertainty, ..reference });
-        let limit = limited.then(|| limit.clone());
-        let record = Record { value: Some(value), reference, accept, limit, ..Record::default() };
-        right.push(status(record) == expected);
-    }
-    // reference 10 +- 0.2, and a discretisation error of 0.3
-    let reference = by_hand(10.0).map(|reference| Reference { uncertainty: Some(0.2), ..reference });
-    let discretisation = Some(Discretisation { value: 0.3, from: String::new() });
-    let compared = Record { reference, discretisation, ..Record::default() };
-    for (value, expected) in [(10.3, Pass), (10.4, Fail)] {
-        right.push(status(Record { value: Some(value), ..compared.clone() }) == expected);
-    }
-    // a lower bound of 2
-    for (value, min, expected) in [(1.85, 1.81, Pass), (1.7, 1.81, Fail), (1.85, 1.75, Info), (3.0, 1.81, Pass)] {
-        let reference = Some(Reference::at_least(2.0, ReferenceKind::Theory, String::new()));
-        let record = Record { reference, ..of_accept(bounds(Some(min), None)) };
-        right.push(status(Record { value: Some(value), ..record }) == expected);
-    }
-    // distances from a curve, relative and in mm
-    for (value, uncertainty, unit, expected) in
-        [(0.02, 0.03, "1", Pass), (0.04, 0.03, "1", Fail), (0.04, 0.06, "1", Info), (0.4, 0.45, "mm", Pass)]
-    {
-        let curve = Reference { uncertainty: Some(uncertainty), ..Reference::default() };
-        let record = Record { value: Some(value), unit: unit.into(), reference: Some(curve), ..Record::default() };
-        right.push(status(record) == expected);
-    }
+    let mut right: Vec<bool> = VERDICTS.known.iter().map(Known::is_right).collect();
     for (statuses, expected) in [
         (&[Fail, Pass, Info][..], Some(Fail)),
         (&[Pass, Error, Fail, Pass], Some(Error)),
@@ -164,10 +144,8 @@ fn verdicts(base: &Check) -> Vec<bool> {
 /// What is measured of a known history, and what it should be, in the order of [`MEASURES`].
 fn known_measures(case: &Case) -> Result<[(f64, f64); 8], StudyError> {
     let scene = scene();
-    let mut history = Table::new(&["time_s", "kinetic_j", "elastic_j", "closure_j"]);
-    for row in [[0.0, 2.0, 1.0, 0.0], [1.0, 1.75, 3.0, -0.5], [2.0, 1.0, 2.0, 0.25], [3.0, 2.0, 1.5, 0.0]] {
-        history.push(&row);
-    }
+    let rows = [[0.0, 2.0, 1.0, 0.0], [1.0, 1.75, 3.0, -0.5], [2.0, 1.0, 2.0, 0.25], [3.0, 2.0, 1.5, 0.0]];
+    let history = Table::of_rows(&["time_s", "kinetic_j", "elastic_j", "closure_j"], rows);
     let mut higher = history.clone();
     higher.columns[1].iter_mut().for_each(|kinetic| *kinetic += 2.0);
     let values = BTreeMap::new();

@@ -68,19 +68,17 @@ pub(super) fn study(case: &Case, _scenes: &[CaseScene], findings: &mut Findings)
         }
     }
     let study = Convergence {
-        suite: case.suite.clone(),
-        stem: format!("{}-{}", case.suite, case.name),
         title: "Equilibrium of a linear field on rational patches".into(),
         caption:
             "Largest nodal force left over, relative to the largest of the tractions, and its work on a smooth field, \
                   relative to that of the tractions; h in parameters."
                 .into(),
-        deviations: case.deviations.clone(),
         theory: "n Gauss points per direction integrate smooth integrands with order 2 n, less p for single functions"
             .into(),
         refined: Refined::Mesh { dimensions: 2 },
         norms: NORMS.map(|quantity| Norm { quantity: quantity.into(), unit: "1".into(), floor: FLOOR }).to_vec(),
         curves,
+        ..Convergence::of(case)
     };
     study.add_to(findings);
     Ok(())

@@ -25,7 +25,7 @@ use fisura::fault;
 
 use crate::output::history::Table;
 use crate::record::{Figure, Reference, ReferenceKind};
-use crate::study::{Findings, Measurement};
+use crate::study::{Case, Findings, Measurement};
 
 /// Levels that the observed order is fitted to: two refinements.
 pub const FITTED: usize = 3;
@@ -147,6 +147,12 @@ impl Curve {
 }
 
 impl Convergence {
+    /// Nothing yet, of a case.
+    pub(super) fn of(case: &Case) -> Self {
+        let (suite, stem) = (case.suite.clone(), format!("{}-{}", case.suite, case.name));
+        Self { suite, stem, deviations: case.deviations.clone(), ..Self::default() }
+    }
+
     /// Hands measurements, series and figures over to the findings of a study; measurements alone to a plan.
     pub fn add_to(&self, findings: &mut Findings) {
         findings.measurements.extend(self.measurements());
@@ -160,24 +166,16 @@ impl Convergence {
     /// `<quantity> on the finest mesh` (`with the smallest step` where that is refined).
     pub fn measurements(&self) -> Vec<Measurement> {
         let mut measurements = Vec::new();
+        let [_, _, finest] = self.refined.words();
         for curve in &self.curves {
             for (index, norm) in self.norms.iter().enumerate() {
                 let levels = curve.errors(index);
                 let theory = |value| Reference::at_least(value, ReferenceKind::Theory, &self.theory);
-                measurements.push(Measurement {
-                    variant: curve.name.clone(),
-                    quantity: format!("order of the {}", norm.quantity),
-                    unit: "1".into(),
-                    value: observed_order(&levels, norm.floor),
-                    reference: curve.orders[index].map(theory),
-                });
-                measurements.push(Measurement {
-                    variant: curve.name.clone(),
-                    quantity: self.refined.at_the_finest(&norm.quantity),
-                    unit: norm.unit.clone(),
-                    value: levels.last().map(|level| level.1),
-                    reference: None,
-                });
+                let words = [curve.name.as_str(), &format!("order of the {}", norm.quantity), "1"];
+                let order = observed_order(&levels, norm.floor);
+                measurements.push(Measurement::new(words, order, curve.orders[index].map(theory)));
+                let words = [curve.name.as_str(), &format!("{} {finest}", norm.quantity), &norm.unit];
+                measurements.push(Measurement::new(words, levels.last().map(|level| level.1), None));
             }
         }
         measurements
@@ -231,7 +229,8 @@ impl Convergence {
     /// Columns h and unknowns.
     fn sizes(&self, curve: &Curve) -> (Vec<String>, Vec<Vec<f64>>) {
         let levels = curve.sorted();
-        let names = vec![self.refined.column().to_string(), charts::UNKNOWNS.to_string()];
+        let [size, ..] = self.refined.words();
+        let names = [size, charts::UNKNOWNS].map(String::from).to_vec();
         (names, vec![levels.iter().map(|l| l.h).collect(), levels.iter().map(|l| l.unknowns as f64).collect()])
     }
 }
@@ -244,27 +243,12 @@ impl Norm {
 }
 
 impl Refined {
-    fn column(self) -> &'static str {
+    /// Column and axis of its size, and where its last error stands.
+    fn words(self) -> [&'static str; 3] {
         match self {
-            Self::Mesh { .. } => "h_m",
-            Self::TimeStep => "dt_s",
+            Self::Mesh { .. } => ["h_m", "span length h (m)", "on the finest mesh"],
+            Self::TimeStep => ["dt_s", "time step (s)", "with the smallest step"],
         }
-    }
-
-    fn axis(self) -> &'static str {
-        match self {
-            Self::Mesh { .. } => "span length h (m)",
-            Self::TimeStep => "time step (s)",
-        }
-    }
-
-    /// The quantity of its last error.
-    fn at_the_finest(self, quantity: &str) -> String {
-        let finest = match self {
-            Self::Mesh { .. } => "on the finest mesh",
-            Self::TimeStep => "with the smallest step",
-        };
-        format!("{quantity} {finest}")
     }
 }
 

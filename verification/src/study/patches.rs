@@ -122,7 +122,8 @@ fn random(degree: usize) -> Result<NurbsPatch, NurbsError> {
     NurbsPatch::new([degree; 2], [&knots[0], &knots[1]], points, weights)
 }
 
-fn open(degree: usize, breaks: &[f64]) -> Vec<f64> {
+/// The open knot vector of ends of spans, or of inner knots that are repeated.
+pub fn open(degree: usize, breaks: &[f64]) -> Vec<f64> {
     let mut knots = vec![breaks[0]; degree];
     knots.extend(breaks);
     knots.extend(vec![breaks[breaks.len() - 1]; degree]);

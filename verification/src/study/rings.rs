@@ -97,13 +97,7 @@ pub(super) fn study(case: &Case, scenes: &[CaseScene], findings: &mut Findings) 
 }
 
 fn in_microseconds(variant: &str, quantity: &str, value: Option<f64>, reference: Option<Reference>) -> Measurement {
-    Measurement {
-        variant: variant.to_string(),
-        quantity: quantity.to_string(),
-        unit: "us".to_string(),
-        value,
-        reference,
-    }
+    Measurement::new([variant, quantity, "us"], value, reference)
 }
 
 const INVARIANTS: [&str; 6] = [

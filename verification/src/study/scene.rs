@@ -209,7 +209,6 @@ pub fn describe(case: &Case, finished: &FinishedScene) -> (RunInfo, Vec<(String,
 
 /// Quantities derived from a history: what figures show beside its own columns.
 fn derived(history: &Table) -> Table {
-    let mut table = Table::new(&["time_s", "time_over_end", "closure_over_largest"]);
     let column = |name: &str| history.column(name).unwrap_or_default();
     let largest = ["kinetic_j", "elastic_j", "fracture_j", "external_work_j"]
         .into_iter()
@@ -217,9 +216,8 @@ fn derived(history: &Table) -> Table {
         .fold(f64::MIN_POSITIVE, larger);
     let times = column("time_s");
     let end = times.last().copied().unwrap_or(0.0).max(f64::MIN_POSITIVE);
-    for (time, closure) in times.iter().zip(column("closure_j")) {
-        table.push(&[*time, time / end, closure / largest]);
-    }
+    let rows = times.iter().zip(column("closure_j")).map(|(time, closure)| [*time, time / end, closure / largest]);
+    let mut table = Table::of_rows(&["time_s", "time_over_end", "closure_over_largest"], rows);
     if let (Some(energy), Some(x)) = (history.column("fracture_j"), history.column("crack_tip_x_m")) {
         let start = energy.first().copied().unwrap_or(0.0);
         table.names.push("fracture_increment_j".into());
@@ -237,12 +235,11 @@ pub fn microseconds(time: f64) -> f64 {
 
 /// Raster of a picture; values rounded to 1e-5, which no colour shows.
 pub fn raster(frame: &Picture, values: &[f64]) -> Table {
-    let mut table = Table::new(&["x_m", "y_m", "value"]);
-    for (index, value) in values.iter().enumerate() {
+    let row = |(index, value): (usize, &f64)| {
         let [x, y] = frame.center(index).map(|c| (c * 1e9).round() / 1e9);
-        table.push(&[x, y, (value * 1e5).round() / 1e5]);
-    }
-    table
+        [x, y, (value * 1e5).round() / 1e5]
+    };
+    Table::of_rows(&["x_m", "y_m", "value"], values.iter().enumerate().map(row))
 }
 
 /// Degree, spans, l0/h, points, steps and dt in words.

@@ -43,7 +43,7 @@ pub(super) fn study(case: &Case, scenes: &[CaseScene], findings: &mut Findings) 
         ];
         findings.measure(&scene.name, quantities, || {
             let bar = Bar::new(scene)?;
-            let Pulled { table, strength, energy } = bar.pull()?;
+            let (table, strength, energy) = bar.pull()?;
             let [openings, stresses, law] = [0, 1, 2].map(|column| table.columns[column].iter().copied());
             let resolved = bar.law.stress(1.0 - bar.span / bar.fracture.length_scale);
             let rows = openings.zip(stresses.zip(law)).filter(|(opening, (_, law))| *opening > OPEN && *law > resolved);
@@ -69,16 +69,6 @@ struct Bar<'a> {
     span: f64,
 }
 
-/// What is found.
-struct Pulled {
-    /// Opening over Gc/ft, stress and law over ft.
-    table: Table,
-    /// Largest stress over ft.
-    strength: f64,
-    /// Surface energy at the end, over Gc.
-    energy: f64,
-}
-
 impl<'a> Bar<'a> {
     fn new(scene: &'a CaseScene) -> Result<Self, StudyError> {
         let body = &scene.scene.bodies[0];
@@ -94,7 +84,9 @@ impl<'a> Bar<'a> {
         Ok(Self { scene, material, fracture, strength: tensile_strength, law, length, height, span })
     }
 
-    fn pull(&self) -> Result<Pulled, StudyError> {
+    /// Stress against opening beside the law, the largest stress over the strength, and the surface energy in the
+    /// end over Gc.
+    fn pull(&self) -> Result<(Table, f64, f64), StudyError> {
         let scene = &self.scene.scene;
         let lattice = Lattice::new(&Patch::new(&scene.mesh), &scene.bodies[0]);
         let model = FractureModel::of(self.material);
@@ -138,7 +130,7 @@ impl<'a> Bar<'a> {
             energy += weight * model.surface_energy(phase, slope)[lane];
         });
         energy /= self.fracture.critical_energy_release_rate * self.height;
-        Ok(Pulled { table, strength, energy })
+        Ok((table, strength, energy))
     }
 
     /// ∫ 1/g dx (m) of a degradation g at the points.

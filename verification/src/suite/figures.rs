@@ -11,7 +11,7 @@ use crate::measure::fitted_speed;
 use crate::output::history::Table;
 use crate::record::{Axis, Curve, Figure, FigureBody, Region};
 use crate::reference::{Library, ReferenceCurve};
-use crate::study::scene::RunInfo;
+use crate::study::scene::{PictureInfo, RunInfo};
 
 /// A chart of one quantity against time, over all runs of a suite.
 #[derive(Debug, Deserialize)]
@@ -36,6 +36,8 @@ struct Quantity {
 
 #[derive(Debug, Deserialize)]
 struct Charts {
+    /// Terms of the ledger, drawn as far as a run has them.
+    ledger: Vec<String>,
     chart: Vec<Quantity>,
 }
 
@@ -124,22 +126,15 @@ fn chart(
     let bands = quantity.bands.iter().filter_map(|name| library.band("plate-events", name));
     let regions =
         bands.map(|b| Region { label: b.name.replace('-', " "), x: Some([b.min * 1e6, b.max * 1e6]), y: None });
-    Figure {
-        id: format!("{prefix}-{}", quantity.id),
-        suite: "plate".into(),
-        title: quantity.title.clone(),
-        caption: captions(runs),
-        deviations: deviations(runs),
-        body: FigureBody::over_time(&quantity.label, curves, regions.collect()),
-    }
+    let body = FigureBody::over_time(&quantity.label, curves, regions.collect());
+    let id = format!("{prefix}-{}", quantity.id);
+    Figure { deviations: deviations(runs), ..Figure::new("plate", [&id, &quantity.title, &captions(runs)], body) }
 }
 
 /// Speed of a reference tip, fitted as that of the runs; its uncertainty is that of two positions 4 µs apart.
 fn speed_of(reference: &ReferenceCurve, position: Curve) -> (Curve, Table) {
-    let mut table = Table::new(&["x", "y"]);
-    for &time in &reference.x {
-        table.push(&[time, fitted_speed(&reference.x, &reference.y, time)]);
-    }
+    let row = |&time: &f64| [time, fitted_speed(&reference.x, &reference.y, time)];
+    let table = Table::of_rows(&["x", "y"], reference.x.iter().map(row));
     let uncertainty_absolute = reference.uncertainty_absolute / 4e-6;
     let series = position.series.replace("tip-x", "tip-speed");
     (Curve { series, y_scale: 1.0, uncertainty_absolute, uncertainty_relative: 0.0, ..position }, table)
@@ -177,44 +172,25 @@ fn closure_chart(suite: &str, runs: &[RunInfo]) -> Figure {
 
 /// Every term of the ledger of one run.
 fn ledger(run: &RunInfo) -> Figure {
-    let terms = [
-        "kinetic_j",
-        "elastic_j",
-        "fracture_j",
-        "external_work_j",
-        "history_work_j",
-        "phase_field_lag_j",
-        "transfer_loss_j",
-        "refinement_j",
-        "closure_j",
-    ];
-    let present = terms.into_iter().filter(|t| run.columns.iter().any(|c| c == t));
+    let present = PLATE.ledger.iter().filter(|term| run.columns.contains(term));
     let curves = present.map(|term| Curve::energy(&run.series, term, run.energy_factor)).collect();
-    Figure {
-        id: format!("plate-ledger-{}", run.case),
-        suite: run.suite.clone(),
-        title: format!("Energy ledger, {}", run.label),
-        caption: format!("{}.", run.resolution),
-        deviations: run.deviations.clone(),
-        body: FigureBody::over_time("energy (J/m)", curves, Vec::new()),
-    }
+    let body = FigureBody::over_time("energy (J/m)", curves, Vec::new());
+    of_run(run, format!("plate-ledger-{}", run.case), "Energy ledger", "", body)
+}
+
+fn of_run(run: &RunInfo, id: String, title: &str, remark: &str, body: FigureBody) -> Figure {
+    let words = [&id, &format!("{title}, {}", run.label), &format!("{}.{remark}", run.resolution)];
+    Figure { deviations: run.deviations.clone(), ..Figure::new(&run.suite, words.map(String::as_str), body) }
 }
 
 /// Phase-field pictures of one run.
 fn pictures(run: &RunInfo) -> Vec<Figure> {
     let half = if run.energy_factor == 2.0 { " Upper half of a symmetric plate." } else { "" };
-    let figure = |picture: &crate::study::scene::PictureInfo| Figure {
-        id: format!("plate-phase-{}-{:.0}us", run.case, picture.time * 1e6),
-        suite: run.suite.clone(),
-        title: format!("Phase field at {:.1} µs, {}", picture.time * 1e6, run.label),
-        caption: format!("{}.{half}", run.resolution),
-        deviations: run.deviations.clone(),
-        body: FigureBody::Field {
-            series: picture.series.clone(),
-            pixels: picture.pixels,
-            label: "phase field c".into(),
-            range: [0.0, 1.0],
-        },
+    let figure = |picture: &PictureInfo| {
+        let time = picture.time * 1e6;
+        let body = FigureBody::phase_field(picture.series.clone(), picture.pixels);
+        let id = format!("plate-phase-{}-{time:.0}us", run.case);
+        of_run(run, id, &format!("Phase field at {time:.1} µs"), half, body)
     };
     run.pictures.iter().map(figure).collect()
 }

@@ -69,11 +69,8 @@ pub fn prepare(case: &Case, library: &Library) -> Result<Prepared, SceneFileErro
     let mut wrong = Wrong { case, problems: Vec::new() };
     if study.is_none() && case.study != "scene" {
         let known: Vec<&str> = std::iter::once("scene").chain(STUDIES.iter().map(|study| study.name)).collect();
-        wrong.note(
-            "study",
-            format!("unknown study {:?}", case.study),
-            format!("{}known: {}", hint(&case.study, &known), known.join(", ")),
-        );
+        let remedy = format!("{}known: {}", hint(&case.study, &known), known.join(", "));
+        wrong.note("study", format!("unknown study {:?}", case.study), remedy);
         return Err(wrong.error());
     }
     wrong.look_at_inputs(study);
@@ -139,11 +136,8 @@ impl Wrong<'_> {
         let root = &self.case.document.root;
         let name = &self.case.study;
         for key in INPUTS.into_iter().filter(|key| !reads.contains(key) && root.get(key).is_some()) {
-            self.note(
-                key,
-                format!("the study {name:?} does not read {key}"),
-                "remove it, or use a study that reads it",
-            );
+            let message = format!("the study {name:?} does not read {key}");
+            self.note(key, message, "remove it, or use a study that reads it");
         }
         if let Some(needed) = reads.first().filter(|key| root.get(key).is_none()) {
             self.note(*needed, "missing", format!("the study {name:?} needs a [{needed}] table"));

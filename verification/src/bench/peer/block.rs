@@ -167,12 +167,8 @@ impl PeerBlock {
             }
             let ratio = volume[row] / last.volume;
             if ratio.is_nan() || (ratio - 1.0).abs() > VOLUME {
-                return Err(format!(
-                    "row {} has the volume {:.6e} m², in fisura {:.6e} m²",
-                    row + 1,
-                    volume[row],
-                    last.volume
-                ));
+                let [there, here] = [volume[row], last.volume];
+                return Err(format!("row {} has the volume {there:.6e} m², in fisura {here:.6e} m²", row + 1));
             }
             apart[0] += square(off);
             apart[1] += square([vx[row] - last.velocity[0], vy[row] - last.velocity[1]]);
@@ -184,11 +180,8 @@ impl PeerBlock {
 }
 
 fn table(points: &[Point]) -> Table {
-    let mut table = Table::new(&COLUMNS);
-    for point in points {
-        table.push(&[point.position[0], point.position[1], point.volume, point.velocity[0], point.velocity[1]]);
-    }
-    table
+    let row = |p: &Point| [p.position[0], p.position[1], p.volume, p.velocity[0], p.velocity[1]];
+    Table::of_rows(&COLUMNS, points.iter().map(row))
 }
 
 #[cfg(test)]

@@ -39,6 +39,8 @@ const BETWEEN_LOOKS: usize = 4;
 const PASSED: f64 = 8.0;
 /// Bins across the contact, and the half width they cover, in a.
 const BINS: usize = 40;
+/// Columns of the pressure.
+const COLUMNS: [&str; 2] = ["s_over_a", "pressure_over_p0"];
 const COVERED: f64 = 1.25;
 /// Half width of the strip for the peak pressure, in a.
 const MIDDLE: f64 = 0.25;
@@ -63,7 +65,7 @@ pub(in super::super) fn study(case: &Case, scenes: &[CaseScene], findings: &mut 
         ];
         let stem = format!("{}-pressure", series_stem(case, name));
         let label = if name.is_empty() { "measured" } else { name };
-        curves.push(curve(label, &stem, ["s_over_a", "pressure_over_p0"], CurveStyle::Markers));
+        curves.push(curve(label, &stem, COLUMNS, CurveStyle::Markers));
         findings.measure(name, quantities, || {
             let found = Hertz::of(scene)?.press(scene)?;
             series.push((stem, found.pressure()));
@@ -73,7 +75,7 @@ pub(in super::super) fn study(case: &Case, scenes: &[CaseScene], findings: &mut 
     findings.series.extend(series);
     let stem = format!("{}-ellipse", series_stem(case, ""));
     findings.series.push((stem.clone(), ellipse()));
-    curves.push(curve("Hertz", &stem, ["s_over_a", "pressure_over_p0"], CurveStyle::Reference));
+    curves.push(curve("Hertz", &stem, COLUMNS, CurveStyle::Reference));
     let caption =
         "Forces of contact per length near the largest force, in units of Hertz's half width and peak pressure.";
     let axes = ["place across the contact over a", "pressure over p0"];
@@ -83,12 +85,8 @@ pub(in super::super) fn study(case: &Case, scenes: &[CaseScene], findings: &mut 
 
 /// Hertz's semi-ellipse as a line.
 fn ellipse() -> Table {
-    let mut table = Table::new(&["s_over_a", "pressure_over_p0"]);
-    for i in 0..=100 {
-        let angle = PI * (i as f64 / 100.0 - 1.0);
-        table.push(&[angle.cos(), -angle.sin().min(0.0)]);
-    }
-    table
+    let angles = (0..=100).map(|i| PI * (f64::from(i) / 100.0 - 1.0));
+    Table::of_rows(&COLUMNS, angles.map(|angle| [angle.cos(), -angle.sin().min(0.0)]))
 }
 
 /// Mean of `sqrt(1 − s²)` over |s| < `half`.
@@ -259,12 +257,9 @@ impl Pressed {
     }
 
     fn pressure(&self) -> Table {
-        let mut table = Table::new(&["s_over_a", "pressure_over_p0"]);
         let width = 2.0 * COVERED / BINS as f64;
-        for i in 0..BINS {
-            table.push(&[(i as f64 + 0.5) * width - COVERED, self.mean(|m| m.bins[i])]);
-        }
-        table
+        let row = |i: usize| [(i as f64 + 0.5) * width - COVERED, self.mean(|m| m.bins[i])];
+        Table::of_rows(&COLUMNS, (0..BINS).map(row))
     }
 
     /// The numbers of the study, in its order.

@@ -28,7 +28,7 @@ pub(in super::super) fn study(case: &Case, scenes: &[CaseScene], findings: &mut 
         let found = findings.compute(|| bars.collide(scene))?;
         bars.add(found.as_ref(), name, findings);
         let stem = format!("{}-force", series_stem(case, name));
-        curves.push(curve(name, &stem, ["time_c_over_l1", "force_over_plateau"], CurveStyle::Line));
+        curves.push(curve(name, &stem, COLUMNS, CurveStyle::Line));
         findings.series.extend(found.as_ref().map(|found| (stem, bars.table(found))));
         meshes.entry(group(scene)).or_default().push(Level {
             h: largest_spans(&scene.mesh)[0],
@@ -39,7 +39,7 @@ pub(in super::super) fn study(case: &Case, scenes: &[CaseScene], findings: &mut 
     }
     let stem = format!("{}-rectangle", series_stem(case, ""));
     findings.series.push((stem.clone(), rectangle()));
-    curves.push(curve("closed form", &stem, ["time_c_over_l1", "force_over_plateau"], CurveStyle::Reference));
+    curves.push(curve("closed form", &stem, COLUMNS, CurveStyle::Reference));
     let caption =
         "Sum of the forces of contact over rho c V/2 per area; the closed form is a rectangle of length 2 L1/c.";
     let axes = ["(t − t of the closing gap) c/L1", "force over rho c V/2"];
@@ -50,6 +50,8 @@ pub(in super::super) fn study(case: &Case, scenes: &[CaseScene], findings: &mut 
 
 /// Meshes from which on there are orders.
 const MESHES: usize = 3;
+/// Columns of the forces.
+const COLUMNS: [&str; 2] = ["time_c_over_l1", "force_over_plateau"];
 const NORMS: [&str; 2] = ["error of the exit velocities", "energy lost in contact"];
 /// Orders of theory.
 const ORDERS: [Option<f64>; 2] = [Some(2.0 / 3.0), Some(1.0)];
@@ -68,26 +70,21 @@ fn convergence(case: &Case, meshes: BTreeMap<String, Vec<Level>>) -> Convergence
     let norm = |quantity: &&str| Norm { quantity: quantity.to_string(), unit: "1".into(), floor: 0.0 };
     let studied = meshes.into_iter().filter(|(_, levels)| levels.len() >= MESHES);
     Convergence {
-        suite: "contact".into(),
-        stem: series_stem(case, ""),
         title: case.label.clone(),
         caption: "Mean velocities after the impact, and energy lost in contact, over V and over the energy at t = 0.".into(),
-        deviations: case.deviations.clone(),
         theory: "a front in a bar of lumped mass is (h² L)^(1/3) wide; what the impact of two end masses loses is their share"
             .into(),
         refined: Refined::Mesh { dimensions: 1 },
         norms: NORMS.iter().map(norm).collect(),
         curves: studied.map(|(name, levels)| Curve { name, levels, orders: ORDERS.to_vec() }).collect(),
+        ..Convergence::of(case)
     }
 }
 
 /// The closed form as a line.
 fn rectangle() -> Table {
-    let mut table = Table::new(&["time_c_over_l1", "force_over_plateau"]);
-    for row in [[-0.25, 0.0], [0.0, 0.0], [0.0, 1.0], [2.0, 1.0], [2.0, 0.0], [2.5, 0.0]] {
-        table.push(&row);
-    }
-    table
+    let rows = [[-0.25, 0.0], [0.0, 0.0], [0.0, 1.0], [2.0, 1.0], [2.0, 0.0], [2.5, 0.0]];
+    Table::of_rows(&COLUMNS, rows)
 }
 
 /// Two bars along x.
@@ -184,11 +181,8 @@ impl Bars {
             findings.add(name, quantity, found.map(value), reference);
         };
         add("velocity of the first bar after the impact over V", &|found| found.exit[0], exact(0.0, source));
-        add(
-            "velocity of the second bar after the impact over V",
-            &|found| found.exit[1],
-            exact(self.leaving(), source),
-        );
+        let leaving = exact(self.leaving(), source);
+        add("velocity of the second bar after the impact over V", &|found| found.exit[1], leaving);
         let restitution = |found: &Collision| found.exit[1] - found.exit[0];
         add("coefficient of restitution", &restitution, exact(self.leaving(), "L1/L2"));
         let duration = |found: &Collision| found.duration / self.duration();
@@ -204,13 +198,9 @@ impl Bars {
     /// Force against time, both in units of the closed form, from a little before the contact to a little
     /// after.
     fn table(&self, found: &Collision) -> Table {
-        let mut table = Table::new(&["time_c_over_l1", "force_over_plateau"]);
-        let rows = found
-            .forces
-            .iter()
-            .map(|[t, force]| [(t - self.closing()) * self.wave / self.lengths[0], force / self.plateau]);
-        rows.filter(|[t, _]| (-0.25..=2.5).contains(t)).for_each(|row| table.push(&row));
-        table
+        let scaled = |[t, force]: &[f64; 2]| [(t - self.closing()) * self.wave / self.lengths[0], force / self.plateau];
+        let rows = found.forces.iter().map(scaled);
+        Table::of_rows(&COLUMNS, rows.filter(|[t, _]| (-0.25..=2.5).contains(t)))
     }
 }
 

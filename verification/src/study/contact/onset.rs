@@ -18,27 +18,15 @@ pub(in super::super) fn study(_case: &Case, scenes: &[CaseScene], findings: &mut
             ("change of momentum before it, over the momentum", exact(0.0, "no force before contact")),
             ("force of contact in the end over the momentum per second", None),
         ];
-        findings.measure(name, quantities, || {
-            let Onset { gap, sharing, momentum, force } = approach(scene)?;
-            Ok([gap, sharing, momentum, force])
-        })?;
+        findings.measure(name, quantities, || approach(scene))?;
     }
     Ok(())
 }
 
-/// What happened before the first force of contact.
-struct Onset {
-    /// Gap then, in spans.
-    gap: f64,
-    /// Gap at which a control point first has mass of both bodies, in spans.
-    sharing: f64,
-    /// Largest change of the momentum of a body before, over its first momentum.
-    momentum: f64,
-    /// Force in the end over momentum, 1/s.
-    force: f64,
-}
-
-fn approach(scene: &Scene) -> Result<Onset, StudyError> {
+/// Gap at the first force of contact and gap at which a control point first has mass of both bodies, in spans;
+/// largest change of the momentum of a body before that force, over its first momentum; force in the end over
+/// momentum, 1/s.
+fn approach(scene: &Scene) -> Result<[f64; 4], StudyError> {
     let [one, two] = scene.bodies.as_slice() else {
         return Err(other("this study needs two blocks"));
     };
@@ -46,7 +34,7 @@ fn approach(scene: &Scene) -> Result<Onset, StudyError> {
     let (low, _) = two.shape.bounding_box();
     let (gap, closing) = (low[0] - high[0], one.velocity[0] - two.velocity[0]);
     let span = largest_spans(&scene.mesh)[0];
-    let mut onset = Onset { gap: f64::NAN, sharing: f64::NAN, momentum: 0.0, force: f64::NAN };
+    let [mut touching, mut sharing, mut change, mut force] = [f64::NAN, f64::NAN, 0.0, f64::NAN];
     let mut first = vec![];
     run(scene, &mut |simulation| {
         let now = (gap - closing * simulation.time()) / span;
@@ -56,21 +44,20 @@ fn approach(scene: &Scene) -> Result<Onset, StudyError> {
         if first.is_empty() {
             first.clone_from(&momenta);
         }
-        if onset.gap.is_nan() {
+        if touching.is_nan() {
             for (p, p0) in momenta.iter().zip(&first) {
-                onset.momentum = larger(onset.momentum, size([p[0] - p0[0], p[1] - p0[1]]) / size(*p0));
+                change = larger(change, size([p[0] - p0[0], p[1] - p0[1]]) / size(*p0));
             }
             if !forces.is_empty() {
-                onset.gap = now;
+                touching = now;
             }
         }
-        if onset.sharing.is_nan() && simulation.updated_frame().is_some_and(|frame| share_a_control_point(frame, span))
-        {
-            onset.sharing = now;
+        if sharing.is_nan() && simulation.updated_frame().is_some_and(|frame| share_a_control_point(frame, span)) {
+            sharing = now;
         }
-        onset.force = size(super::sum(&forces)) / size(first[0]);
+        force = size(super::sum(&forces)) / size(first[0]);
     })?;
-    Ok(onset)
+    Ok([touching, sharing, change, force])
 }
 
 /// Whether a control point of the patch has mass of two bodies.

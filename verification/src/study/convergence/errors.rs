@@ -82,4 +82,20 @@ impl ErrorPoints {
         }
         sums
     }
+
+    /// Squares of a vector field whose exact value and gradient (`[i][j]`, of component i along j) are known.
+    pub fn vector_squares(
+        &self,
+        field: &[Vec<f64>; 2],
+        exact: impl Fn([f64; 2]) -> ([f64; 2], [[f64; 2]; 2]),
+    ) -> Squares {
+        let component = |i: usize| {
+            let of_component = |x| {
+                let (value, gradient) = exact(x);
+                (value[i], gradient[i])
+            };
+            self.squares(&field[i], of_component)
+        };
+        (0..2).map(component).sum()
+    }
 }

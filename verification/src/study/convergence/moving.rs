@@ -9,7 +9,6 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use fisura::dynamics::failure::Failure;
-use fisura::dynamics::projection::Projection;
 use fisura::dynamics::updated_frame::UpdatedFrame;
 use fisura::particles::lattice::Lattice;
 use fisura::particles::points::Point;
@@ -20,8 +19,8 @@ use super::problem::{Manufactured, Problem};
 use super::scene::scene;
 use super::{OnMesh, Variant, other};
 use crate::case::convergence::ConvergenceSetup;
-use crate::study::StudyError;
 use crate::study::orders::Level;
+use crate::study::{StudyError, projected_on};
 
 /// Displacements below this at t = 0 are none, m.
 const AT_REST: f64 = 1e-12;
@@ -142,8 +141,7 @@ pub(crate) fn displace(
     let patch = &frame.patch;
     let whole = Body { shape: Shape::Patch, layout: Layout::Gauss, ..body.clone() };
     let lattice = Lattice::new(patch, &whole);
-    let projection = Projection::new(&lattice, &[]).ok_or_else(|| other("the points do not determine a projection"))?;
-    let control = [0, 1].map(|i: usize| projection.project(|x| displacement(x)[i]));
+    let control = projected_on(&lattice, |_| Vec::new(), displacement)?;
     let (grid, greville) = (patch.control_grid(), [0, 1].map(|d| patch.spaces[d].greville()));
     let at = |x: [f64; 2]| {
         let [i, j] = [0, 1].map(|d| greville[d].partition_point(|g| *g < x[d]));

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use fisura::dynamics::projection::Projection;
 use fisura::dynamics::statics::StaticSolver;
 use fisura::dynamics::total_frame::TotalFrame;
 use fisura::linear_algebra::control_grid::ControlGrid;
@@ -16,15 +15,15 @@ use fisura::splines::patch::control_points_on;
 use fisura::splines::quadrature::Rule;
 use nalgebra::DMatrix;
 
-use super::errors::{ErrorPoints, Squares};
+use super::errors::ErrorPoints;
 use super::problem::{Manufactured, Problem};
 use super::scene::scene;
 use super::{OnMesh, Variant, other};
 use crate::case::convergence::{ConvergenceSetup, Loading, PatchFamily};
 use crate::exact::Equation;
 use crate::extremes::larger;
-use crate::study::StudyError;
 use crate::study::orders::Level;
+use crate::study::{StudyError, projected, projected_on};
 
 /// Control values of a vector field, by component.
 type VectorField = [Vec<f64>; 2];
@@ -160,16 +159,10 @@ impl<'a> Discrete<'a> {
     /// Projection of a vector field; components that boundaries hold are zero where they are so in the exact
     /// solution.
     fn project(&self, function: impl Fn([f64; 2]) -> [f64; 2] + Sync) -> Result<VectorField, StudyError> {
-        let component = |i: usize| -> Result<Vec<f64>, StudyError> {
-            let held = match self.problem.equation {
-                Equation::Dynamic => self.frame.constraints.held(i),
-                _ => Vec::new(),
-            };
-            let projection = Projection::new(&self.frame.lattice, &held)
-                .ok_or_else(|| other("the points do not determine a projection"))?;
-            Ok(projection.project(|x| function(x)[i]))
-        };
-        Ok([component(0)?, component(1)?])
+        match self.problem.equation {
+            Equation::Dynamic => projected(&self.frame, function),
+            _ => projected_on(&self.frame.lattice, |_| Vec::new(), function),
+        }
     }
 
     /// The quotient of `Σ_p V_p N_I f` and `Σ_p V_p N_I`: what a lumped transfer from points to grid gives.
@@ -289,11 +282,8 @@ impl<'a> Discrete<'a> {
     /// Relative errors of a displacement in L2 and in the H1 seminorm.
     fn displacement_errors(&self, field: &VectorField, time: f64) -> Vec<f64> {
         let solution = &self.problem.solution;
-        let component = |i: usize| {
-            let exact = |x| (solution.displacement(x, time)[i], solution.displacement_gradient(x, time)[i]);
-            self.points.squares(&field[i], exact)
-        };
-        let squares: Squares = (0..2).map(component).sum();
+        let exact = |x| (solution.displacement(x, time), solution.displacement_gradient(x, time));
+        let squares = self.points.vector_squares(field, exact);
         vec![squares.l2(), squares.h1()]
     }
 
@@ -320,11 +310,7 @@ impl<'a> Discrete<'a> {
     }
 
     fn velocity_error(&self, field: &VectorField, time: f64) -> f64 {
-        let component = |i: usize| {
-            let exact = |x| (self.problem.solution.velocity(x, time)[i], [0.0; 2]);
-            self.points.squares(&field[i], exact)
-        };
-        (0..2).map(component).sum::<Squares>().l2()
+        self.points.vector_squares(field, |x| (self.problem.solution.velocity(x, time), [[0.0; 2]; 2])).l2()
     }
 
     fn phase_errors(&self, field: &[f64], time: f64) -> Vec<f64> {

@@ -51,28 +51,23 @@ pub(super) fn figures(study: &Convergence) -> Vec<Figure> {
 fn figure(study: &Convergence, index: usize, against: Against, curves: &[&Curve]) -> Figure {
     let norm = &study.norms[index];
     let name = format!("{}-{}", study.stem, words(&norm.quantity, "-"));
+    let [size, axis, _] = study.refined.words();
     let (id, title, x, column) = match against {
-        Against::Size => (name, study.title.clone(), study.refined.axis(), study.refined.column()),
+        Against::Size => (name, study.title.clone(), axis, size),
         Against::Unknowns => (format!("{name}-unknowns"), per(study, "unknown"), "unknowns", UNKNOWNS),
         Against::Cost => (format!("timing/{name}"), per(study, "second"), "measured wall time (s)", SECONDS),
     };
     let unit = if norm.unit == "1" { String::new() } else { format!(" ({})", norm.unit) };
     let slopes = if against == Against::Cost { Vec::new() } else { triangles(study, index, against, curves) };
-    Figure {
-        id,
-        suite: study.suite.clone(),
-        title,
-        caption: study.caption.clone(),
-        deviations: study.deviations.clone(),
-        body: FigureBody::Chart {
-            x: Axis::logarithmic(x),
-            y: Axis::logarithmic(&format!("{}{unit}", norm.quantity)),
-            curves: curves.iter().map(|curve| drawn(study, curve, norm, against, column)).collect(),
-            regions: Vec::new(),
-            slopes,
-            floors: floor(norm, index, curves).into_iter().collect(),
-        },
-    }
+    let body = FigureBody::Chart {
+        x: Axis::logarithmic(x),
+        y: Axis::logarithmic(&format!("{}{unit}", norm.quantity)),
+        curves: curves.iter().map(|curve| drawn(study, curve, norm, against, column)).collect(),
+        regions: Vec::new(),
+        slopes,
+        floors: floor(norm, index, curves).into_iter().collect(),
+    };
+    Figure { deviations: study.deviations.clone(), ..Figure::new(&study.suite, [&id, &title, &study.caption], body) }
 }
 
 fn per(study: &Convergence, what: &str) -> String {

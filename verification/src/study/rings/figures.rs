@@ -13,43 +13,26 @@ use crate::study::scene::{length_scale, microseconds, raster, series_stem};
 pub fn add(findings: &mut Findings, case: &Case, case_scene: &CaseScene, watched: &Watched) {
     let stem = series_stem(case, &case_scene.name);
     let caption = caption(case_scene, watched);
-    let figure = |id: String, title: String, body: FigureBody| Figure {
-        id,
-        suite: case.suite.clone(),
-        title,
-        caption: caption.clone(),
+    let figure = |name: &str, title: &str, body: FigureBody| Figure {
         deviations: case.deviations.clone(),
-        body,
+        ..Figure::new(&case.suite, [&format!("{}-{name}", case.name), title, &caption], body)
     };
     let series = format!("series/{stem}.csv");
-    let factor = case_scene.energy_factor;
+    let curve = |column: &str| Curve::energy(&series, column, case_scene.energy_factor);
+    let body = FigureBody::over_time("fracture energy (J)", vec![curve("fracture_j")], events());
+    let title = "Fracture energy of both rings, events of the paper marked";
+    findings.figures.push(figure("fracture-energy", title, body));
     let energies = ["fracture_j", "kinetic_j", "elastic_j", "contact_loss_j", "closure_j"];
-    let curve = |column: &str| Curve::energy(&series, column, factor);
-    findings.figures.push(figure(
-        format!("{}-fracture-energy", case.name),
-        "Fracture energy of both rings, events of the paper marked".into(),
-        FigureBody::over_time("fracture energy (J)", vec![curve("fracture_j")], events()),
-    ));
-    findings.figures.push(figure(
-        format!("{}-ledger", case.name),
-        "Energy ledger of both rings".into(),
-        FigureBody::over_time("energy (J)", energies.iter().map(|column| curve(column)).collect(), Vec::new()),
-    ));
+    let body = FigureBody::over_time("energy (J)", energies.map(curve).to_vec(), Vec::new());
+    findings.figures.push(figure("ledger", "Energy ledger of both rings", body));
     for picture in &watched.pictures {
         let Some(phase) = &picture.phase else { continue };
         let time = microseconds(picture.time);
         let name = format!("{stem}-phase-{time}us");
         findings.series.push((name.clone(), raster(picture, phase)));
-        findings.figures.push(figure(
-            format!("{}-phase-{time:.0}us", case.name),
-            format!("Phase field at {time:.0} µs"),
-            FigureBody::Field {
-                series: format!("series/{name}.csv"),
-                pixels: picture.pixels,
-                label: "phase field c".into(),
-                range: [0.0, 1.0],
-            },
-        ));
+        let (name, title) = (format!("series/{name}.csv"), format!("Phase field at {time:.0} µs"));
+        let body = FigureBody::phase_field(name, picture.pixels);
+        findings.figures.push(figure(&format!("phase-{time:.0}us"), &title, body));
     }
 }
 

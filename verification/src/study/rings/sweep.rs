@@ -96,16 +96,11 @@ fn score(events: &Events, end: f64) -> f64 {
     (scored.map(|(found, paper)| (found - paper).powi(2)).sum::<f64>() / SCORED as f64).sqrt()
 }
 
-/// Geometries, and the scene they change.
-fn setup<'a>(case: &'a Case, scenes: &'a [CaseScene]) -> Result<(&'a [Geometry], &'a CaseScene), StudyError> {
-    match (&case.rings, scenes) {
-        (Some(geometries), [template]) if !geometries.is_empty() => Ok((geometries, template)),
-        _ => Err(other("a sweep needs a [rings] table with geometries, and one scene")),
-    }
-}
-
 pub fn study(case: &Case, scenes: &[CaseScene], findings: &mut Findings) -> Result<(), StudyError> {
-    let (geometries, template) = setup(case, scenes)?;
+    let geometries = case.rings.as_ref().filter(|geometries| !geometries.is_empty());
+    let (Some(geometries), [template]) = (geometries, scenes) else {
+        return Err(other("a sweep needs a [rings] table with geometries, and one scene"));
+    };
     let trials = findings.compute(|| {
         let runs = geometries.par_iter().map(|&geometry| Trial::run(geometry, &template.scene));
         let mut trials = runs.collect::<Result<Vec<_>, _>>()?;

@@ -51,14 +51,6 @@ fn printed(entry: &str) -> Option<Reference> {
     Some(Reference { uncertainty, ..Reference::new(entry.parse().ok(), ReferenceKind::IndependentCode, source) })
 }
 
-fn word_of(mass: Mass) -> &'static str {
-    if mass == Mass::Lumped { "lumped" } else { "consistent" }
-}
-
-fn cut_step(word: &str) -> String {
-    format!("c dt/h, {word} mass")
-}
-
 pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene], findings: &mut Findings) -> Result<(), StudyError> {
     bars(case, findings)?;
     for degree in 1..=3 {
@@ -109,11 +101,11 @@ fn bars(case: &Case, findings: &mut Findings) -> Result<(), StudyError> {
     };
     let mut curves = Vec::new();
     for (column, (degree, mass, published)) in TABLE.iter().enumerate() {
-        let word = word_of(*mass);
+        let word = if *mass == Mass::Lumped { "lumped" } else { "consistent" };
         for (cut, published) in PUBLISHED_CUTS.into_iter().zip(published) {
             if let Some(reference) = printed(published) {
                 let variant = format!("p={degree}, cut {cut:e}");
-                findings.add(&variant, &cut_step(word), step_at(cut, column), Some(reference));
+                findings.add(&variant, &format!("c dt/h, {word} mass"), step_at(cut, column), Some(reference));
             }
         }
         let [less, more] = FINE_CUTS[degree - 1];

@@ -131,13 +131,9 @@ fn above(scene: &Scene, dt: f64) -> Result<[f64; 2], StudyError> {
             Ok(()) => (),
         }
     };
-    let (mut steps, mut named) = (f64::NAN, 0.0);
-    if let Some(found) = found {
-        // Control points stand up to a span outside.
-        let near = scene.bodies[0].shape.contains_within(found.place, 1.0);
-        let timed = found.time > 0.0 && found.time.is_finite() && !found.to_string().contains("NaN");
-        steps = found.step as f64;
-        named = yes(near && timed && found.cause.contains("times the critical step"));
-    }
-    Ok([steps, named])
+    let Some(found) = found else { return Ok([f64::NAN, 0.0]) };
+    // Control points stand up to a span outside.
+    let near = scene.bodies[0].shape.contains_within(found.place, 1.0);
+    let timed = found.time > 0.0 && found.time.is_finite() && !found.to_string().contains("NaN");
+    Ok([found.step as f64, yes(near && timed && found.cause.contains("times the critical step"))])
 }

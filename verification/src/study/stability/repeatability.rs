@@ -42,12 +42,8 @@ pub(in super::super) fn study(_case: &Case, _scenes: &[CaseScene], findings: &mu
 }
 
 fn glass(cells: [usize; 2], degree: usize, fracture: Option<Fracture>) -> Scene {
-    PlainScene::free(
-        Mesh::uniform([degree; 2], [0.0; 2], [8e-3, 4e-3], cells),
-        Material { young_modulus: 32e9, poisson_ratio: 0.2, density: 2450.0, fracture },
-        degree + 1,
-    )
-    .scene()
+    let material = Material { young_modulus: 32e9, poisson_ratio: 0.2, density: 2450.0, fracture };
+    PlainScene::free(Mesh::uniform([degree; 2], [0.0; 2], [8e-3, 4e-3], cells), material, degree + 1).scene()
 }
 
 /// A plate with a crack, pulled apart.

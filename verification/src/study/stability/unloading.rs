@@ -29,18 +29,13 @@ pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene], findings: &mut
         for (label, column) in [("Σ V H", "history_j_per_m"), ("elastic energy", "elastic_j_per_m")] {
             curves.push(curve(&format!("{name}, {label}"), &stem, ["time_s", column], CurveStyle::Line));
         }
-        let quantities = [
-            (
-                "largest fall of the history of a point in a step over the largest history",
-                exact(0.0, "a maximum over time"),
-            ),
-            ("peaks of the elastic energy", None),
-        ];
+        let fall = "largest fall of the history of a point in a step over the largest history";
+        let quantities = [(fall, exact(0.0, "a maximum over time")), ("peaks of the elastic energy", None)];
         findings.measure(name, quantities, || {
-            let Vibration { table, fall, largest } = vibrate(frame)?;
+            let (table, fall) = vibrate(frame)?;
             let turns = table.columns[2].windows(3).filter(|e| e[1] > e[0] && e[1] > e[2]).count();
             series.push((stem, table));
-            Ok([fall / largest, turns as f64])
+            Ok([fall, turns as f64])
         })?;
     }
     findings.series.extend(series);
@@ -49,17 +44,9 @@ pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene], findings: &mut
     Ok(())
 }
 
-/// What is seen of a vibrating body.
-struct Vibration {
-    /// Time, `Σ V H` and elastic energy after every step.
-    table: Table,
-    /// Largest fall of the history of a point in a step, J/m³.
-    fall: f64,
-    /// Largest history at the end, J/m³.
-    largest: f64,
-}
-
-fn vibrate(frame: Frame) -> Result<Vibration, StudyError> {
+/// Sum of V H and elastic energy against time, and the largest fall of the history of a point in a step over the
+/// largest history.
+fn vibrate(frame: Frame) -> Result<(Table, f64), StudyError> {
     let mut simulation = Simulation::new(&bar(frame))?;
     let mut table = Table::new(&["time_s", "history_j_per_m", "elastic_j_per_m"]);
     let mut fall = 0.0;
@@ -74,7 +61,7 @@ fn vibrate(frame: Frame) -> Result<Vibration, StudyError> {
         before = now;
         crate::watch::check()?;
     }
-    Ok(Vibration { table, fall, largest: largest(before.into_values()) })
+    Ok((table, fall / largest(before.into_values())))
 }
 
 /// History of every point by its place at t = 0, in units of 1e-6 m.

@@ -138,7 +138,7 @@ pub(super) fn look_at_charts(wrong: &mut Wrong<'_>, scenes: &[CaseScene]) {
     for (index, chart) in case.charts.iter().enumerate() {
         let curves = chart.curves.iter().enumerate().map(|(i, curve)| (format!("curves.{i}.column"), &curve.column));
         for (key, formula) in std::iter::once(("x".to_string(), &chart.x)).chain(curves) {
-            let missing = scenes.iter().find_map(|scene| on_blank_run(scene, |run| run.column(formula).err()));
+            let missing = scenes.iter().find_map(|scene| on_blank_run(scene, |run| run.column(&formula.0).err()));
             if let Some(message) = missing {
                 wrong.note(format!("chart.{index}.{key}"), message, "name a column, or a value of the case");
             }
