@@ -12,7 +12,7 @@ use fisura_verification::record::Status;
 use fisura_verification::suite::Case;
 use serde::{Deserialize, Serialize};
 
-use super::runner::Ending;
+use super::runner::{Ending, Report};
 use crate::failure::Failure;
 
 /// Below this folder of the output.
@@ -111,12 +111,10 @@ impl<'a> Store<'a> {
 impl Cell {
     fn new(fault: Option<&str>, case: &str, key: String, ending: Ending) -> Self {
         let (fault, case) = (fault.map(String::from), case.to_string());
-        let (ended, report) = match ending {
-            Ok(report) => (None, Some(report)),
-            Err(message) => (Some(message), None),
+        let (ended, Report { seconds, records, passed, .. }) = match ending {
+            Ok(report) => (None, report),
+            Err(message) => (Some(message), Report::default()),
         };
-        let seconds = report.as_ref().map_or(0.0, |report| report.seconds);
-        let (records, passed) = report.map(|report| (report.records, report.passed)).unwrap_or_default();
         let those = |wanted: fn(Status) -> bool| {
             let ids = records.iter().filter(|(_, status)| wanted(*status)).map(|(id, _)| id.clone());
             ids.collect::<Vec<String>>()
@@ -136,7 +134,6 @@ impl Cell {
 
 #[cfg(test)]
 mod tests {
-    use super::super::runner::Report;
     use super::*;
 
     fn report(status: Status) -> Ending {

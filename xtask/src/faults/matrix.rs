@@ -1,8 +1,10 @@
 //! Every fault against every case, and the checks that no fault turns red.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt::Write;
 
+use fisura_reports::template::filled;
+use minijinja::value::Serde;
+use minijinja::{Value, context};
 use serde::Serialize;
 
 use super::cells::Store;
@@ -93,67 +95,26 @@ impl Matrix {
 
     /// What it says, in a few lines.
     pub fn text(&self) -> String {
-        let mut out = self.summary();
-        for idle in self.idle.iter().filter(|idle| idle.reason.is_none()) {
-            let _ = writeln!(out, "passes with every fault, and no reason is given: {}", idle.check);
-        }
-        if self.is_incomplete() {
-            out.push_str("the matrix is not complete: the next run resumes\n");
-        }
-        out
-    }
-
-    fn summary(&self) -> String {
-        let of = |state: State| self.count(|other| other == state);
-        let unexplained = self.idle.iter().filter(|idle| idle.reason.is_none()).count();
-        format!(
-            "{} × {} cells: {} fail, {} pass, {} not applicable, {} ended without records, {} not run\n\
-             {} checks, {} of them in finished cases; {} of these pass with every fault ({} without a reason)\n",
-            self.faults.len(),
-            self.cases.len(),
-            self.count(|state| matches!(state, State::Fail(_))),
-            of(State::Pass),
-            of(State::NotApplicable),
-            of(State::Ended),
-            of(State::NotRun),
-            self.checks,
-            self.decided,
-            self.idle.len(),
-            unexplained,
-        )
+        filled("matrix.txt", include_str!("../texts/matrix.txt"), self.values())
     }
 
     /// Summary, suites, table of cases and faults, and list of the checks that stay green.
     pub fn markdown(&self) -> String {
-        let mut out = format!("\n# Every fault on every case\n\n{}\n", self.summary());
-        out.push_str("| suite | cases | faults that make a check fail |\n|---|---|---|\n");
-        for (suite, (cases, faults)) in self.suites() {
-            let _ = writeln!(out, "| {suite} | {cases} | {faults} |");
+        filled("matrix.md", include_str!("../texts/matrix.md"), self.values())
+    }
+
+    fn values(&self) -> Value {
+        let of = |state: State| self.count(|other| other == state);
+        context! {
+            matrix => Serde(self),
+            suites => Serde(self.suites()),
+            incomplete => self.is_incomplete(),
+            fail => self.count(|state| matches!(state, State::Fail(_))),
+            pass => of(State::Pass),
+            not_applicable => of(State::NotApplicable),
+            ended => of(State::Ended),
+            not_run => of(State::NotRun),
         }
-        out.push_str(
-            "\nA number counts the records that fail; · is a run in which all hold, ! a run that ended without records, ? a cell \
-             that was not run. In an empty cell the case does not execute the code of the fault. Columns are the faults above.\n\n| case |",
-        );
-        out.extend((1..=self.faults.len()).map(|number| format!(" {number} |")));
-        let _ = writeln!(out, "\n|---|{}", "---|".repeat(self.faults.len()));
-        for (case, states) in &self.cases {
-            let _ = write!(out, "| {case} |");
-            for state in states {
-                let _ = match state {
-                    State::Fail(count) => write!(out, " {count} |"),
-                    State::Pass => write!(out, " · |"),
-                    State::Ended => write!(out, " ! |"),
-                    State::NotApplicable => write!(out, " |"),
-                    State::NotRun => write!(out, " ? |"),
-                };
-            }
-            out.push('\n');
-        }
-        out.push_str("\n# Checks that pass with every fault\n\n| check | reason |\n|---|---|\n");
-        for Idle { check, reason } in &self.idle {
-            let _ = writeln!(out, "| `{check}` | {} |", reason.unwrap_or("**no reason is given**"));
-        }
-        out
     }
 
     /// Cases of each suite, and faults that turn a check of it red.

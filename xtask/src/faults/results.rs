@@ -1,8 +1,8 @@
 //! What catches each fault, and the files that say so.
 
-use std::fmt::Write;
-
+use fisura_reports::template::filled;
 use fisura_verification::output::{OutputError, OutputFolder};
+use minijinja::value::Serde;
 use serde::Serialize;
 
 use super::cells::Store;
@@ -82,47 +82,12 @@ impl Results {
 
     /// One line per fault.
     pub fn text(&self) -> String {
-        let width = self.faults.iter().map(|caught| caught.fault.id.len()).max().unwrap_or(0);
-        let mut out = String::new();
-        for Caught { fault, caught_by, checks, ended } in &self.faults {
-            let verdict = match caught_by.first() {
-                Some(first) => format!("caught    {:>3} of {checks:>3} checks: {first}", caught_by.len()),
-                None => format!("SURVIVES    0 of {checks:>3} checks: {}", fault.cases.join(", ")),
-            };
-            let _ = writeln!(out, "{:width$}  {verdict}", fault.id);
-            for ending in ended {
-                let _ = writeln!(out, "{:width$}  ended without records: {ending}", "");
-            }
-        }
-        for case in &self.unsound {
-            let _ = writeln!(out, "{case} does not hold without a fault: see `cargo xtask verify --case {case}`");
-        }
-        let (all, survivors) = (self.faults.len(), self.survivors().count());
-        let _ = writeln!(out, "{} of {all} faults are caught", all - survivors);
-        out
+        filled("faults.txt", include_str!("../texts/faults.txt"), Serde(self))
     }
 
     /// The table of faults and checks.
     fn markdown(&self) -> String {
-        let mut out = String::from(
-            "# Planted errors and the checks that catch them\n\n| | fault | what is wrong | named cases | failing checks |\n|---|---|---|---|---|\n",
-        );
-        for (number, Caught { fault, caught_by, checks, .. }) in self.faults.iter().enumerate() {
-            let red = match caught_by.as_slice() {
-                [] => format!("**none** of {checks}"),
-                all => {
-                    let shown: Vec<String> = all.iter().take(2).map(|id| format!("`{id}`")).collect();
-                    let more = if all.len() > 2 { ", …" } else { "" };
-                    format!("{} of {checks}: {}{more}", all.len(), shown.join(", "))
-                }
-            };
-            let cases = fault.cases.join(", ");
-            let _ = writeln!(out, "| {} | {} | {} | {cases} | {red} |", number + 1, fault.id, fault.what);
-        }
-        for case in &self.unsound {
-            let _ = writeln!(out, "\n**{case} does not hold without a fault.**");
-        }
-        out
+        filled("faults.md", include_str!("../texts/faults.md"), Serde(self))
     }
 }
 
