@@ -31,21 +31,9 @@ fn slices(place: &Place) {
 
 /// Files below a folder with their bytes, what is exempt of `results.json` left out.
 fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
-    let mut all = Vec::new();
-    let mut folders = vec![folder.to_path_buf()];
-    while let Some(next) = folders.pop() {
-        for entry in fs::read_dir(&next).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else {
-                let name = path.strip_prefix(folder).unwrap().to_string_lossy().into_owned();
-                all.push((name, fs::read(&path).unwrap()));
-            }
-        }
-    }
-    all.sort();
-    all
+    let paths = glob::glob(&format!("{}/**/*", folder.display())).unwrap().map(Result::unwrap);
+    let name = |path: &Path| path.strip_prefix(folder).unwrap().to_string_lossy().into_owned();
+    paths.filter(|path| path.is_file()).map(|path| (name(&path), fs::read(&path).unwrap())).collect()
 }
 
 /// `results.json` as text, without environment and timing.

@@ -1,6 +1,7 @@
 //! `run --vtk`: files for ParaView at every frame, and none without it.
 
 use super::support::{BLOCK, NOTCHED, Place};
+use super::vtu;
 
 const FILES: [&str; 6] = ["grid-0.vtu", "grid-1.vtu", "grid.pvd", "points-0.vtu", "points-1.vtu", "points.pvd"];
 
@@ -11,27 +12,14 @@ fn vtk_files(place: &Place) -> Vec<String> {
     place.files("out").into_iter().filter(|name| name.ends_with(".vtu") || name.ends_with(".pvd")).collect()
 }
 
-/// Points, cells and names of the fields, from the header, behind which its arrays follow each other.
+/// Points, cells and names of the fields of a file.
 fn parse(place: &Place, name: &str) -> (usize, usize, Vec<String>) {
     let bytes = std::fs::read(place.path(&format!("out/{name}"))).expect("a file");
-    let mark = b"<AppendedData encoding=\"raw\">\n_";
-    let start = bytes.windows(mark.len()).position(|window| window == mark).expect("appended data");
-    let (header, data) = bytes.split_at(start + mark.len());
-    let text = std::str::from_utf8(header).expect("text");
-    let values = |text: &str, name: &str| -> Vec<String> {
-        let start = format!("{name}=\"");
-        let after = text.split(&start).skip(1);
-        after.map(|rest| rest.split('"').next().expect("a value").to_string()).collect()
-    };
-    let mut end = 0_usize;
-    for offset in values(text, " offset") {
-        assert_eq!(offset, end.to_string(), "arrays follow each other");
-        end += 8 + u64::from_le_bytes(data[end..end + 8].try_into().expect("eight bytes")) as usize;
-    }
-    assert!(end > 0 && data[end..].starts_with(b"\n</AppendedData>"), "nothing is left over");
-    let number = |name: &str| values(text, name)[0].parse().expect("a number");
-    let fields = text.split("</PointData>").next().expect("fields");
-    (number("NumberOfPoints"), number("NumberOfCells"), values(fields, " Name"))
+    let (header, arrays) = vtu::parse(&bytes);
+    let number = |name: &str| vtu::value(&header, name).parse().expect("a number");
+    let fields = header.split("</PointData>").next().expect("fields").matches("<DataArray ").count();
+    let names = arrays.into_iter().take(fields).map(|array| array.0).collect();
+    (number("NumberOfPoints"), number("NumberOfCells"), names)
 }
 
 #[test]
