@@ -13,17 +13,7 @@ pub fn case(claim: &str, tier: &str, largest_closure: f64) -> String {
 
 /// A scene as that of a case that bounds the closure of its ledger.
 pub fn case_of(scene: &str, claim: &str, tier: &str, largest_closure: f64) -> String {
-    let scene: String = scene
-        .lines()
-        .map(|line| match line.trim_start_matches('[') {
-            table if table.len() < line.len() => {
-                let brackets = "[".repeat(line.len() - table.len());
-                format!("{brackets}scene.{table}\n")
-            }
-            _ if line.starts_with("title") => "[scene]\ntitle = \"Block\"\n".to_string(),
-            _ => format!("{line}\n"),
-        })
-        .collect();
+    let scene = format!("[scene]\n{scene}").replace("\n[", "\n[scene.").replace("[scene.[", "[[scene.");
     format!(
         "claim = \"{claim}\"\ntier = \"{tier}\"\nseconds = 1\n\n{scene}\n[[check]]\n\
          id = \"closure-of-the-energy-ledger-over-the-largest-energy\"\n\
