@@ -239,17 +239,11 @@ mod tests {
                 assert!(is_range(fitted.low, fitted.high) && fitted.ticks.len() < 20, "{fitted:?}");
             }
         }
-        assert!(AxisScale::with_range(Scale::Log, -323.3, -323.2, 5).ticks.len() < 20);
-    }
-
-    #[test]
-    fn constant_and_empty_data_still_give_a_range() {
-        let axis = Axis { label: String::new(), scale: Scale::Linear, range: None };
         for values in [vec![], vec![0.0], vec![3.0, 3.0], vec![f64::NAN]] {
-            let fitted = AxisScale::fit(&axis, values, 0.05, 5);
+            let fitted = AxisScale::fit(&axis(None), values, 0.05, 5);
             assert!(fitted.low < fitted.high && !fitted.ticks.is_empty(), "{fitted:?}");
         }
-        let narrow = AxisScale::with_range(Scale::Log, 2.0, 2.01, 5);
-        assert!(narrow.ticks.len() >= 2, "{narrow:?}");
+        assert!(AxisScale::with_range(Scale::Log, -323.3, -323.2, 5).ticks.len() < 20);
+        assert!(AxisScale::with_range(Scale::Log, 2.0, 2.01, 5).ticks.len() >= 2);
     }
 }

@@ -140,20 +140,21 @@ impl<'a> Records<'a> {
 /// All sections that have something to show.
 pub fn sections(set: &BenchSet) -> Vec<Section> {
     let records = Records(&set.records);
+    let one = |exhibit: Option<Exhibit>| Vec::from_iter(exhibit);
     let parts = [
-        ("Targets", ratios::exhibits(records)),
+        ("Targets", one(ratios::exhibit(records))),
         ("Work and precision", work_precision::exhibits(records)),
         ("The plate", plate::exhibits(set)),
         ("Other benchmarks", scoreboard::exhibits(records)),
         ("Time of a step by phase", stages::exhibits(records)),
         ("Solving for the phase field", stages::solves(records)),
-        ("Threads", conditions::threads(records)),
-        ("Ceilings", conditions::ceilings(records)),
+        ("Threads", one(conditions::threads(records))),
+        ("Ceilings", one(conditions::ceilings(records))),
         ("Collisions", contact::exhibits(records)),
-        ("Points that cross spans", motion::exhibits(records)),
+        ("Points that cross spans", one(motion::exhibit(records))),
         ("Scaling from ten thousand to sixteen million points", scale::exhibits(records)),
-        ("Cost of declared models", conditions::scenes(records)),
-        ("Another checkout", conditions::baseline(records)),
+        ("Cost of declared models", one(conditions::scenes(records))),
+        ("Another checkout", one(conditions::baseline(records))),
         ("Other codes", conditions::peers(set)),
         ("All records", vec![page::all_records(set)]),
     ];

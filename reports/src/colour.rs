@@ -56,19 +56,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn brightness_rises_with_the_value() {
+    fn brightness_rises_with_the_value_and_ends_with_the_range() {
         let luma = |v: f64| {
             let [r, g, b] = rgb(v).map(f64::from);
             0.2126 * r + 0.7152 * g + 0.0722 * b
         };
         assert!((1..=100).all(|i| luma(i as f64 / 100.0) > luma((i - 1) as f64 / 100.0)));
         assert!(luma(0.0) < 30.0 && luma(1.0) > 235.0);
-    }
-
-    #[test]
-    fn values_outside_the_range_take_the_end_colours() {
-        assert_eq!(level(-3.0, [0.0, 1.0]), 0);
-        assert_eq!(level(1.0, [0.0, 1.0]), LEVELS - 1);
-        assert_eq!(level(7.0, [0.0, 1.0]), LEVELS - 1);
+        assert_eq!([-3.0, 1.0, 7.0].map(|value| level(value, [0.0, 1.0])), [0, LEVELS - 1, LEVELS - 1]);
     }
 }

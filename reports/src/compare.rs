@@ -61,6 +61,16 @@ pub enum Effect {
     Worse,
 }
 
+/// How much a cost changed, given what it is beyond, and whether that is a gain.
+fn graded(minor: bool, major: bool, worse: bool) -> (Change, Effect) {
+    let effect = if worse { Effect::Worse } else { Effect::Better };
+    match (minor, major) {
+        (_, true) => (Change::Major, effect),
+        (true, false) => (Change::Minor, effect),
+        (false, false) => (Change::Unchanged, Effect::Neutral),
+    }
+}
+
 /// Value and verdict of one side.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Side {
@@ -249,11 +259,8 @@ fn accuracy(base: &Record, new: &Record) -> (Change, Effect, String) {
         return (Change::Major, Effect::Better, format!("{} → {}", word(base.status), word(found)));
     }
     if base.status != Status::Info && new.status == Status::Info {
-        return (
-            Change::Major,
-            Effect::Worse,
-            "the check no longer has a verdict: its bounds are missing or too wide to show agreement".to_string(),
-        );
+        let why = "the check no longer has a verdict: its bounds are missing or too wide to show agreement";
+        return (Change::Major, Effect::Worse, why.to_string());
     }
     if base.unit != new.unit {
         let why = format!("the unit changed from {:?} to {:?}: values are not compared", base.unit, new.unit);

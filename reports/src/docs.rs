@@ -2,42 +2,29 @@
 //!
 //! Nothing between two marks is typed by hand: `cargo xtask report --docs` writes it.
 
+use std::sync::LazyLock;
+
 use fisura_verification::record::ResultSet;
+use serde::Deserialize;
 
 use crate::text::render_text;
 use crate::view::{BASES, Basis, Counts, limited};
 
-/// What each suite is about, in the order of the tables.
-const SUITES: [(&str, &str); 10] = [
-    (
-        "patch",
-        "to round-off: spline bases, constant stress, rigid motion, bending, and half models against full ones; a plate with a hole to 1 % of its largest stress",
-    ),
-    (
-        "convergence",
-        "orders against exact solutions: at least p + 1 in L2 and p in H1, 2 with the lumped mass, at most 2 where quadrature points move",
-    ),
-    (
-        "manufactured",
-        "the problems of `convergence` with loads summed over the quadrature points; layouts of points that lose order; frequencies of a bar",
-    ),
-    ("energy", "the energy balance closes; momentum is conserved"),
-    ("contact", "impact, sliding, collision, Hertz and a stack, against closed forms"),
-    (
-        "fracture",
-        "closed forms of the phase-field models (AT2, AT1, PF-CZM), surface energy of cracks, wave speeds, early energies of the plate",
-    ),
-    (
-        "rings",
-        "two brittle rings in collision: momentum, balance, symmetry; the geometry is assumed, and the end of contact in the source paper is missed",
-    ),
-    ("stability", "critical time step, bodies that end inside an element, extreme input, units, threads, long runs"),
-    (
-        "benchmarks",
-        "the test of Kalthoff and Winkler, elastic and with a crack in shear (AT1), and a pre-strained strip, against finite elements (extrapolated to h = 0); a pressurised ring against a one-dimensional program; the strength of a disc pressed on arcs",
-    ),
-    ("plate", "the cracking plate at h = l0, against finite elements and splines extrapolated to h = 0"),
-];
+/// The suites, in the order of the tables.
+#[derive(Deserialize)]
+struct Suites {
+    suite: Vec<Suite>,
+}
+
+#[derive(Deserialize)]
+struct Suite {
+    name: String,
+    about: String,
+}
+
+static SUITES: LazyLock<Suites> = LazyLock::new(|| {
+    toml::from_str(include_str!("docs/suites.toml")).expect("suites.toml lists suites; tests read it")
+});
 
 /// The block of a name that shows results; `None` if there is none.
 pub fn block(set: &ResultSet, name: &str) -> Option<String> {
@@ -55,7 +42,7 @@ pub fn shows_results(name: &str) -> bool {
 
 /// Whether results are those of all suites.
 pub fn holds_all_suites(set: &ResultSet) -> bool {
-    SUITES.iter().all(|(suite, _)| set.records.iter().any(|record| record.suite == *suite))
+    SUITES.suite.iter().all(|suite| set.records.iter().any(|record| record.suite == suite.name))
 }
 
 fn suites(set: &ResultSet) -> String {
@@ -63,8 +50,8 @@ fn suites(set: &ResultSet) -> String {
         "| suite | what is checked | agree with a reference | hold without one | known limits | fail | info |\n\
                    |---|---|---|---|---|---|---|\n"
             .to_string();
-    for (suite, what) in SUITES {
-        let counts = Counts::of(set.records.iter().filter(|record| record.suite == suite));
+    for Suite { name: suite, about } in &SUITES.suite {
+        let counts = Counts::of(set.records.iter().filter(|record| record.suite == *suite));
         let (mut with, mut without) = (Vec::new(), Vec::new());
         for ((basis, name), count) in BASES.into_iter().zip(counts.passes) {
             let words = if matches!(basis, Basis::Invariant | Basis::Regression) { &mut without } else { &mut with };
@@ -73,12 +60,12 @@ fn suites(set: &ResultSet) -> String {
             }
         }
         let [with, without] = [with, without].map(|words| if words.is_empty() { "–".into() } else { words.join(", ") });
-        let of_suite = limited(set).into_iter().filter(|record| record.suite == suite);
+        let of_suite = limited(set).into_iter().filter(|record| record.suite == *suite);
         let late = of_suite.filter(|record| record.limit.as_ref().is_some_and(|limit| limit.regression)).count();
         let late = if late > 0 { format!(" ({late} chosen after the result)") } else { String::new() };
         let limits = format!("{}{late}", counts.known_limit);
         let (fails, shown) = (counts.fail + counts.error, counts.info);
-        out.push_str(&format!("| `{suite}` | {what} | {with} | {without} | {limits} | {fails} | {shown} |\n"));
+        out.push_str(&format!("| `{suite}` | {about} | {with} | {without} | {limits} | {fails} | {shown} |\n"));
     }
     out
 }
@@ -124,7 +111,7 @@ mod tests {
     fn blocks_of_results_say_what_the_records_say() {
         let set = results();
         let suites = block(&set, "suites").unwrap();
-        assert!(suites.contains("| `plate` |") && suites.lines().count() == 2 + SUITES.len(), "{suites}");
+        assert!(suites.contains("| `plate` |") && suites.lines().count() == 2 + SUITES.suite.len(), "{suites}");
         assert!(block(&set, "verdict").unwrap().contains("(6 pass"), "{:?}", block(&set, "verdict"));
         assert!(block(&set, "nonsense").is_none() && !shows_results("nonsense"));
         assert!(!holds_all_suites(&set), "the example has one suite");

@@ -8,16 +8,16 @@ use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 use fisura_verification::output::foreign::is_plain;
-use fisura_verification::record::{Figure, FigureBody, Record, Reference, ReferenceKind, ResultSet, Status};
-use minijinja::syntax::SyntaxConfig;
+use fisura_verification::record::{Figure, FigureBody, Record, Reference, ReferenceKind, ResultSet};
 use minijinja::value::Serde;
-use minijinja::{Environment, Value, context};
+use minijinja::{Value, context};
 
 use crate::judge::stored_boards;
 use crate::number::{duration, grouped, plain, pretty};
 use crate::rates::{Rate, rates};
 use crate::series::names;
 use crate::svg::slug;
+use crate::template::{self, row, verdict};
 use crate::view::{self, Counts};
 
 use embed::embedded;
@@ -65,9 +65,6 @@ fn fill(
     (drawings, looks): (&Drawings, &str),
     left_out: &BTreeSet<&str>,
 ) -> Result<String, minijinja::Error> {
-    let mut environment = Environment::new();
-    environment.set_syntax(SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).build()?);
-    environment.add_template("report.html", TEMPLATE)?;
     let counts = Counts::of(&set.records);
     let opening = opening(&shown.figures);
     let opens = |figure: &Figure| opening.iter().any(|first| first.id == figure.id);
@@ -84,8 +81,8 @@ fn fill(
         remarks => counts.remarks(),
         missing,
         environment => Serde(view::environment(set)),
-        broken => view::broken(shown).into_iter().map(|r| row(r, &r.id)).collect::<Value>(),
-        limited => view::limited(shown).into_iter().map(|r| row(r, &r.id)).collect::<Value>(),
+        broken => view::broken(shown).into_iter().map(|r| row(r, &r.id, pretty)).collect::<Value>(),
+        limited => view::limited(shown).into_iter().map(|r| row(r, &r.id, pretty)).collect::<Value>(),
         opening => opening.iter().map(|figure| pictures(figure)).collect::<Value>(),
         suites => suites(shown, &opens, &pictures),
         timing => timed.map(pictures).collect::<Value>(),
@@ -93,13 +90,7 @@ fn fill(
         sources => sources(&shown.records),
         deviations => deviations(shown),
     };
-    environment.get_template("report.html")?.render(page)
-}
-
-/// A status for the template: its word, also as the name of a class, and its symbol.
-fn verdict(status: Status) -> Value {
-    let word = view::word(status);
-    context! { word, class => word.replace(' ', "-"), symbol => view::symbol(status) }
+    template::fill("report.html", TEMPLATE, page)
 }
 
 /// What a reader came for, as far as it is there: energies of the plate, its crack at the end, speed against
@@ -188,7 +179,7 @@ fn case(records: &[&Record]) -> Value {
         series => series.iter().map(|name| link(name)).collect::<Value>(),
         time => time(records),
         open => counts.fail + counts.error > 0,
-        rows => records.iter().map(|r| row(r, run(r))).collect::<Value>(),
+        rows => records.iter().map(|r| row(r, run(r), pretty)).collect::<Value>(),
         id => &id,
     }
 }
@@ -210,30 +201,6 @@ fn time(records: &[&Record]) -> String {
     }
     let per_step = || format!(", {} particle-steps at {} ns", grouped(steps), plain(1e9 * wall / steps as f64, 3));
     format!("{} of wall time{}", duration(wall), if steps > 0 { per_step() } else { String::new() })
-}
-
-fn row(record: &Record, name: &str) -> Value {
-    let reference = record.reference.as_ref().map(|r| {
-        context! {
-            value => view::reference_value(r, &record.unit, pretty),
-            kind => view::kind(r),
-            source => &r.source,
-            comparison => view::comparison(record, pretty).unwrap_or_default(),
-        }
-    });
-    let limit = view::limit(record, pretty).zip(record.limit.as_ref());
-    context! {
-        anchor => format!("check-{}", slug(&record.id)),
-        name,
-        verdict => verdict(record.status),
-        quantity => &record.quantity,
-        value => view::value(record, pretty),
-        reference,
-        bounds => view::accepted(record, pretty),
-        why => &record.accept.why,
-        limit => limit.map(|(range, limit)| context! { range, why => &limit.why }),
-        message => record.message.as_deref().unwrap_or_default(),
-    }
 }
 
 fn picture(figure: &Figure, drawings: &Drawings, left_out: &BTreeSet<&str>) -> Value {

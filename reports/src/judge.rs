@@ -3,7 +3,7 @@
 mod board;
 mod stored;
 
-use fisura_verification::judge::verdict::{Comparison, Outcome, Verdict, VerdictSet};
+use fisura_verification::judge::verdict::{Comparison, Verdict, VerdictSet};
 use fisura_verification::judge::{Judged, QUANTITIES};
 use fisura_verification::output::foreign::line;
 use fisura_verification::output::history::Table;
@@ -14,6 +14,7 @@ use minijinja::{Environment, Value, context};
 use crate::figure::render_figure;
 use crate::number::{duration, plain};
 use crate::series::SeriesSet;
+use crate::template::filled;
 
 pub use board::{Board, board, board_markdown, board_page};
 pub use stored::{StoredBoard, board_of_the_book, stored_boards};
@@ -25,39 +26,8 @@ const MOST_DRAWN: usize = 12;
 
 /// The verdicts for a terminal.
 pub fn render_text(set: &VerdictSet) -> String {
-    let mut out = String::new();
-    for verdict in &set.verdicts {
-        out.push_str(&format!(
-            "{} {}: {}\n  against {} ({})\n  numerical uncertainty: {}\n",
-            verdict.outcome.word().to_uppercase(),
-            line(&verdict.folder),
-            line(&verdict.code.name),
-            verdict.reference.id,
-            verdict.reference.uncertainty,
-            verdict.numerical_uncertainty
-        ));
-        let rows = rows(verdict);
-        let width = rows.iter().map(|r| r[0].chars().count()).max().unwrap_or(0);
-        for [name, figures, outcome, why] in rows {
-            let why = if why.is_empty() { why } else { format!(": {why}") };
-            out.push_str(&format!("  {name:width$}  {figures:44}  {outcome}{}\n", line(&why)));
-        }
-        for finding in &verdict.findings {
-            out.push_str(&format!("  FOUND {}: {}\n", finding.id, line(&finding.text)));
-        }
-        for difference in &verdict.differences {
-            out.push_str(&format!("  declared difference: {}\n", line(difference)));
-        }
-        for note in &verdict.notes {
-            out.push_str(&format!("  note: {}\n", line(note)));
-        }
-        out.push_str(&format!("  {}\n\n", verdict.sentence));
-    }
-    let count = |outcome| set.verdicts.iter().filter(|v| v.outcome == outcome).count();
-    let [pass, fail, incomplete, diagnostic] =
-        [Outcome::Pass, Outcome::Fail, Outcome::Incomplete, Outcome::Diagnostic].map(count);
-    let total = set.verdicts.len();
-    out + &format!("{total} judged: {pass} pass, {fail} fail, {incomplete} incomplete, {diagnostic} diagnostic\n")
+    let verdicts: Vec<_> = set.verdicts.iter().map(|verdict| (verdict, rows(verdict))).collect();
+    filled("judge.txt", include_str!("../templates/judge.txt"), context! { verdicts => Serde(verdicts) })
 }
 
 /// Name, figures, outcome and reason of every comparison.
@@ -66,13 +36,10 @@ fn rows(verdict: &Verdict) -> Vec<[String; 4]> {
     for quantity in &verdict.quantities {
         for comparison in &quantity.comparisons {
             let name = match comparison.window_s {
-                Some([from, to]) => format!(
-                    "{}, {} ({}–{} µs)",
-                    quantity.quantity,
-                    comparison.name,
-                    plain(1e6 * from, 3),
-                    plain(1e6 * to, 3)
-                ),
+                Some(window) => {
+                    let [from, to] = window.map(|time| plain(1e6 * time, 3));
+                    format!("{}, {} ({from}–{to} µs)", quantity.quantity, comparison.name)
+                }
                 None => quantity.quantity.clone(),
             };
             out.push([name, figures(comparison), comparison.outcome.word().into(), comparison.why.clone()]);
@@ -128,10 +95,8 @@ pub fn page(judged: &[Judged]) -> Result<String, minijinja::Error> {
 }
 
 fn fill(title: String, verdicts: Value, boards: &[Board]) -> Result<String, minijinja::Error> {
-    let mut environment = Environment::new();
-    environment.add_template("judge.html", TEMPLATE)?;
     let page = context! { style => STYLE, title, verdicts, boards => Serde(boards) };
-    environment.get_template("judge.html")?.render(page)
+    Environment::new().render_named_str("judge.html", TEMPLATE, page)
 }
 
 fn facts(verdict: &Verdict) -> Vec<(&'static str, String)> {

@@ -38,17 +38,11 @@ fn case(record: &Record, time: Duration) -> TestCase {
         Status::Error => TestCaseStatus::non_success(NonSuccessKind::Error),
     };
     match record.status {
-        Status::Pass | Status::KnownLimit => {}
-        Status::Info => {
-            status.set_message(message(record));
-        }
-        Status::Fail => {
-            status.set_type("out of bounds").set_message(message(record));
-        }
-        Status::Error => {
-            status.set_type("broke down").set_message(reason(record));
-        }
-    }
+        Status::Pass | Status::KnownLimit => &mut status,
+        Status::Info => status.set_message(message(record)),
+        Status::Fail => status.set_type("out of bounds").set_message(message(record)),
+        Status::Error => status.set_type("broke down").set_message(reason(record)),
+    };
     let mut case = TestCase::new(record.id.as_str(), status);
     case.set_classname(format!("{}.{}", record.suite, record.case));
     case.set_time(time);

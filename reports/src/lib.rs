@@ -29,8 +29,8 @@
 //! [`text`] prints the verdict on a terminal, [`run_report`] draws the pictures of a single run,
 //! [`mod@bench`] the benchmarks. Below them lie [`series`] (the numbers behind figures and what can be wrong
 //! with them), [`axis`] (ranges and ticks), [`colour`] (the map of fields), [`number`] (digits as they are
-//! printed), [`rates`] (orders of convergence among records) and [`view`] (verdicts in words, records in
-//! groups).
+//! printed), [`rates`] (orders of convergence among records), [`view`] (verdicts in words, records in groups)
+//! and [`template`] (documents from templates).
 
 pub mod animation;
 pub mod annotations;
@@ -55,6 +55,7 @@ pub mod paper;
 pub mod rates;
 pub mod run_report;
 pub mod series;
+pub mod template;
 pub mod text;
 pub mod view;
 pub mod vtk;

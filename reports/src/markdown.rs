@@ -3,45 +3,11 @@
 use fisura_verification::output::foreign::line;
 use fisura_verification::record::ResultSet;
 
-use crate::number::plain;
-use crate::view::{Counts, accepted, broken, by_suite, environment, reason, symbol, value, word};
-
-/// Most failures that are listed.
-const LISTED: usize = 50;
+use crate::template::{filled, summary};
 
 /// The summary, one screen if nothing fails: verdict, environment, what does not hold, counts of every suite.
 pub fn render_markdown(set: &ResultSet) -> String {
-    let counts = Counts::of(&set.records);
-    let mut out = format!("# {} {}\n\n{}.", symbol(counts.verdict()), counts.sentence(), counts.list());
-    let remarks = counts.remarks();
-    if !remarks.is_empty() {
-        out.push_str(&format!(" {remarks}."));
-    }
-    for (name, text) in environment(set) {
-        out.push_str(&format!(" {name}: {}.", cell(&text)));
-    }
-    out.push_str("\n\n");
-    let broken = broken(set);
-    if !broken.is_empty() {
-        out.push_str("## Does not hold\n\n| | check | value | accepted | why |\n|---|---|---|---|---|\n");
-        for record in broken.iter().take(LISTED) {
-            let status = format!("{} {}", symbol(record.status), word(record.status));
-            let why = cell(&format!("{}. {}", record.claim.trim_end_matches('.'), reason(record)));
-            let (value, accepted) = (cell(&value(record, plain)), accepted(record, plain));
-            out.push_str(&format!("| {status} | {} | {value} | {accepted} | {why} |\n", code(&record.id)));
-        }
-        if broken.len() > LISTED {
-            out.push_str(&format!("\n{} more are in `report.html`.\n", broken.len() - LISTED));
-        }
-        out.push('\n');
-    }
-    out.push_str("| suite | pass | known limits | fail | errors | info |\n|---|---|---|---|---|---|\n");
-    for (suite, records) in by_suite(set).into_iter().filter(|(_, records)| !records.is_empty()) {
-        let c = Counts::of(records);
-        let row = [c.pass, c.known_limit, c.fail, c.error, c.info].map(|count| count.to_string()).join(" | ");
-        out.push_str(&format!("| {} | {row} |\n", cell(suite)));
-    }
-    out + "\n`report.html` lists every record, and the known limits with their causes.\n"
+    filled("summary.md", include_str!("../templates/summary.md"), summary(set))
 }
 
 /// Text as itself: one line, nothing that Markdown or HTML would take for its own.

@@ -24,15 +24,9 @@ pub fn pretty(value: f64, digits: usize) -> String {
 
 /// `10⁻⁶` for −6.
 pub fn power_of_ten(exponent: i32) -> String {
-    let text = exponent.to_string();
-    let digits = text.chars().map(|c| match c {
-        '-' => '⁻',
-        '1' => '¹',
-        '2' => '²',
-        '3' => '³',
-        digit => char::from_u32('⁰' as u32 + (digit as u32 - '0' as u32)).unwrap_or('⁰'),
-    });
-    format!("10{}", digits.collect::<String>())
+    const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let raised = |c: char| c.to_digit(10).map_or('⁻', |digit| RAISED[digit as usize]);
+    format!("10{}", exponent.to_string().chars().map(raised).collect::<String>())
 }
 
 /// A duration in seconds for a reader: `0.42 ms`, `12.3 s`, `2 min 5 s`, `1 h 3 min`.
@@ -54,15 +48,9 @@ pub fn duration(seconds: f64) -> String {
 
 /// `1234567` as `1 234 567`, with narrow no-break spaces.
 pub fn grouped(count: u64) -> String {
-    let digits = count.to_string();
-    let mut out = String::new();
-    for (i, c) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            out.push('\u{202f}');
-        }
-        out.push(c);
-    }
-    out
+    let digits: Vec<char> = count.to_string().chars().collect();
+    let groups: Vec<String> = digits.rchunks(3).rev().map(|group| group.iter().collect()).collect();
+    groups.join("\u{202f}")
 }
 
 /// A number rounded to some digits, split into mantissa and power of ten.

@@ -89,11 +89,7 @@ mod tests {
         assert!(svg.contains("time (µs)") && svg.contains("energy (mJ)") && svg.contains("kinetic"));
         assert!(!svg.contains("contact loss") && !svg.contains("NaN"));
         assert_eq!(svg, energies_svg(&history(), "Plate").unwrap());
-    }
-
-    #[test]
-    fn a_history_without_energies_is_an_error() {
-        assert!(energies_svg(&Table::new(&["time_s"]), "Plate").is_err());
+        assert!(energies_svg(&Table::new(&["time_s"]), "Plate").is_err(), "a history without energies");
     }
 
     #[test]

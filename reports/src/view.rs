@@ -4,6 +4,7 @@
 use std::collections::{HashMap, HashSet};
 
 use fisura_verification::record::{Accept, Record, Reference, ReferenceKind, ResultSet, Status, Timing};
+use serde::Serialize;
 
 use crate::number::{DIGITS, plain};
 
@@ -59,7 +60,7 @@ impl Basis {
 }
 
 /// How often each status occurs.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct Counts {
     /// Agrees with its reference, or lies within its bounds where there is none.
     pub pass: usize,
@@ -150,23 +151,21 @@ impl Counts {
 
 /// A status in words.
 pub fn word(status: Status) -> &'static str {
-    match status {
-        Status::Pass => "pass",
-        Status::KnownLimit => "known limit",
-        Status::Fail => "fail",
-        Status::Error => "error",
-        Status::Info => "info",
-    }
+    word_and_symbol(status).0
 }
 
 /// A status as a symbol.
 pub fn symbol(status: Status) -> &'static str {
+    word_and_symbol(status).1
+}
+
+fn word_and_symbol(status: Status) -> (&'static str, &'static str) {
     match status {
-        Status::Pass => "✓",
-        Status::KnownLimit => "≈",
-        Status::Fail => "✗",
-        Status::Error => "‼",
-        Status::Info => "·",
+        Status::Pass => ("pass", "✓"),
+        Status::KnownLimit => ("known limit", "≈"),
+        Status::Fail => ("fail", "✗"),
+        Status::Error => ("error", "‼"),
+        Status::Info => ("info", "·"),
     }
 }
 

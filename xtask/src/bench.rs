@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::time::Duration;
 
-use fisura_reports::bench::{self as report, Exhibit, Records, Section};
+use fisura_reports::bench::{self as report, Exhibit, Records};
 use fisura_verification::bench::baseline::Baseline;
 use fisura_verification::bench::record::BenchSet;
 use fisura_verification::bench::{BenchError, FAMILIES, Session, Settings};
@@ -131,13 +131,10 @@ fn text(set: &BenchSet) -> String {
         };
         rows.push((ratio.what, format!("{:.3}{word}", ratio.value.median)));
     }
-    let rows: Vec<(&str, String)> = rows.iter().map(|(what, value)| (what.as_str(), value.clone())).collect();
     let mut out = console::table(&rows);
-    for Section { exhibits, .. } in report::sections(set) {
-        for exhibit in exhibits {
-            if let Exhibit::Plot(plot) = exhibit {
-                out.push_str(&format!("\n{}: {}\n", plot.title, plot.reading));
-            }
+    for exhibit in report::sections(set).into_iter().flat_map(|section| section.exhibits) {
+        if let Exhibit::Plot(plot) = exhibit {
+            out.push_str(&format!("\n{}: {}\n", plot.title, plot.reading));
         }
     }
     for record in set.records.iter().filter(|record| !record.verified) {

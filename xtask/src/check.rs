@@ -10,9 +10,11 @@ use fisura::particles::spans::{largest_spans, smallest_span};
 use fisura::scene::{Body, Crack, Frame, Material, Plane, Scene};
 use fisura::simulation::{Extent, Simulation};
 use fisura::validate::expected_size;
-use fisura_reports::number::{duration, plain};
+use fisura_reports::number::duration;
+use fisura_reports::template::filled;
 use fisura_verification::scene::SceneFile;
 use fisura_verification::scene_run::peak_memory_mb;
+use minijinja::value::Serde;
 use serde::Serialize;
 
 use crate::cli::{Common, SceneArgs};
@@ -30,6 +32,8 @@ use long_ends::LongEnds;
 use trial::{Trial, spans};
 use words::{solves, strength, transfer, words};
 
+/// The findings for people.
+const TEXT: &str = include_str!("texts/check.txt");
 /// Points or control points up to which a scene is made ready to be checked: seconds, and less than 1 GiB.
 const MOST_PREPARED: usize = 1_000_000;
 /// Distance in spans by which a slit ends behind the last knot line before its tip, for p = 1 to 4: by the
@@ -64,7 +68,7 @@ pub fn check(args: &Args, common: &Common) -> Result<Exit, Failure> {
         console::note(common, &format!("warning: {warning}"));
     }
     found.warnings.splice(0..0, file.warnings.iter().map(ToString::to_string));
-    console::show(common, &found, || found.text());
+    console::show(common, &found, || filled("check.txt", TEXT, Serde(&found)));
     Ok(Exit::Done)
 }
 
@@ -254,65 +258,6 @@ impl Findings {
             estimate: String::new(),
             warnings: warnings.to_vec(),
         }
-    }
-
-    fn text(&self) -> String {
-        let second = |s: f64| format!("{} s", plain(s, 5));
-        let memory = match self.phase_field_memory_mb {
-            0.0 => String::new(),
-            mb => format!(", {} MB of it for the phase field", plain(mb, 3)),
-        };
-        let mut rows = vec![
-            ("title", self.title.clone()),
-            ("models", format!("{}; plane {}, {} frame", self.models.join(", "), self.plane, self.frame)),
-        ];
-        rows.extend(self.transfer.iter().map(|transfer| ("transfer", transfer.clone())));
-        rows.extend(self.bodies.iter().map(|body| ("body", body.text())));
-        rows.extend(self.materials.iter().map(|(name, material)| ("material", material.text(name))));
-        rows.extend(self.phase_field.iter().map(|solves| ("phase field", solves.clone())));
-        let [hx, hy] = self.span_m.map(|h| plain(1e3 * h, 5));
-        let critical = self.critical_step_s.map_or("none, nothing can move".to_string(), second);
-        let time = format!("{} in {} steps of {}", second(self.end_time_s), self.steps, second(self.time_step_s));
-        let halved = |times: usize| format!(", halved {times} times near cracks");
-        let halved = self.halvings.map_or(String::new(), halved);
-        rows.extend([
-            ("mesh", format!("{} x {} spans of {hx} x {hy} mm{halved}", self.cells[0], self.cells[1])),
-            ("degree", format!("{} x {}", self.degree[0], self.degree[1])),
-            ("particles", self.particles.to_string()),
-            ("control points", self.control_points.to_string()),
-            ("critical step", critical),
-        ]);
-        rows.extend(self.long_ends.iter().map(|long_ends| ("", long_ends.text())));
-        rows.extend([
-            ("time", time),
-            ("output", format!("{} rows after the first, {} frames", self.samples, self.frames)),
-            ("memory", format!("about {} MB{memory}", plain(self.memory_mb, 3))),
-            ("wall time", self.estimated_wall_s.map_or("unknown".into(), |s| format!("about {}", duration(s)))),
-            ("", self.estimate.clone()),
-        ]);
-        rows.extend(self.warnings.iter().map(|w| ("warning", w.clone())));
-        console::table(&rows)
-    }
-}
-
-impl BodyFindings {
-    fn text(&self) -> String {
-        let Self { name, material, tractions, cracks, slits } = self;
-        let slits = slits.iter().map(|SlitFindings { drawn_to_m: [x, y], ends_before_m }| {
-            let [x, y, before] = [x, y, ends_before_m].map(|length| plain(1e3 * length, 4));
-            format!("; the slit to ({x}, {y}) mm ends about {before} mm before that")
-        });
-        format!("{name} of {material}; tractions: {tractions}, cracks: {cracks}{}", slits.collect::<String>())
-    }
-}
-
-impl MaterialFindings {
-    fn text(&self, name: &str) -> String {
-        let ratio = self.length_scale_over_span.map(|r| format!(", l0/h {}", plain(r, 4))).unwrap_or_default();
-        let strength = self.tensile_strength_pa.map(|s| format!(", tensile strength about {} MPa", plain(1e-6 * s, 3)));
-        let fracture = self.fracture.iter().map(|words| format!("; {words}{}", strength.clone().unwrap_or_default()));
-        let fracture: String = fracture.collect();
-        format!("{name}; wave speed {} m/s{ratio}{fracture}", plain(self.wave_speed_m_per_s, 5))
     }
 }
 

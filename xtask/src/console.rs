@@ -89,7 +89,7 @@ pub fn graphical() -> bool {
 }
 
 /// Rows of name and value, the values aligned.
-pub fn table(rows: &[(&str, String)]) -> String {
+pub fn table(rows: &[(String, String)]) -> String {
     let width = rows.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
     rows.iter().map(|(name, value)| format!("{name:width$}  {}\n", foreign::line(value))).collect()
 }
@@ -101,7 +101,7 @@ mod tests {
     #[test]
     fn texts_of_others_keep_to_their_row_and_json_stays_the_same() {
         let title = "a\u{1b}]0;owned\u{7}\u{9b}2J\nclosure  0".to_string();
-        assert_eq!(table(&[("title", title.clone())]).lines().count(), 1);
+        assert_eq!(table(&[("title".into(), title.clone())]).lines().count(), 1);
         let json = serde_json::to_string_pretty(&[&title]).unwrap_or_default();
         let shown = escaped(&json);
         assert!(!shown.contains('\u{9b}') && shown.contains("\\u009b"), "{shown}");

@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use fisura::linear_algebra::extremes::larger;
+use fisura_reports::template::filled;
 use fisura_verification::output::history::Table;
+use minijinja::context;
 
 use crate::cli::{Common, Format, SceneArgs};
 use crate::exit::Exit;
@@ -57,20 +59,8 @@ fn shown(folder: &Path) -> Result<String, Failure> {
     let history = Table::read(&folder.join("history.csv")).map_err(|error| Failure::input(error.to_string()))?;
     let column = |name: &str| history.column(name).unwrap_or_default();
     let series = ENERGIES.map(|(letter, name)| (letter, column(name)));
-    let picture = folder.join("phase-80us.svg");
-    Ok(format!(
-        "\ne elastic, f fracture energy (J) over 80 µs\n\n{}\n\
-         the crack: {}\n\n\
-         The mesh is coarse: its spans are as long as the length scale of the phase field. Compared with a\n\
-         converged solution, the kinetic energy has an error of 4 % and the elastic energy of 11 %. With spans\n\
-         a quarter as long, both errors are about 1 %.\n\n\
-         next:\n  \
-         cargo xtask verify --suite plate      compare this plate with independent finite elements\n  \
-         cargo xtask check {SCENE}     show the model and the cost of the scene\n  \
-         cargo xtask run {SCENE} --set \"mesh.degree=3\"\n",
-        plot(column("time_s"), &series),
-        picture.display()
-    ))
+    let (plot, picture) = (plot(column("time_s"), &series), folder.join("phase-80us.svg").display().to_string());
+    Ok(filled("demo.txt", include_str!("texts/demo.txt"), context! { plot, picture, scene => SCENE }))
 }
 
 /// Series as letters in a frame; where two meet, the later one is seen.

@@ -138,3 +138,6 @@ fn build(common: &Common) -> Result<PathBuf, Failure> {
         Err(error) => Err(bad(format!("cargo cannot be started: {error}"))),
     }
 }
+
+#[cfg(test)]
+mod tests;

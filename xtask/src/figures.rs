@@ -7,13 +7,12 @@ use std::sync::Arc;
 
 use fisura_reports::animation::render_animation;
 use fisura_reports::field::Raster;
-use fisura_reports::number::duration;
 use fisura_reports::paper::{PaperFigure, cases_of};
 use fisura_reports::{FigureError, SeriesSet, bundle, read_results};
 use fisura_verification::output::OutputFolder;
 use fisura_verification::record::{Figure, FigureBody, ResultSet};
 use fisura_verification::reference::{Library, Source};
-use fisura_verification::suite::{Case, Options, read_cases};
+use fisura_verification::suite::{Case, read_cases};
 use serde_json::json;
 
 use crate::cli::Common;
@@ -21,8 +20,8 @@ use crate::environment::environment;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::report::unreadable;
-use crate::verify::{carry_out, cases_folder, remembered, verdict};
-use crate::{built, console, folders};
+use crate::verify::{carry_out, cases_folder, estimate, verdict};
+use crate::{console, folders};
 
 /// Arguments of `figures`.
 #[derive(Debug, clap::Args)]
@@ -221,21 +220,10 @@ fn run(wanted: &[PaperFigure], out: &Path, common: &Common) -> Result<(ResultSet
         return Err(file.error.into());
     }
     let cases: Vec<Case> = cases.into_iter().filter(|case| needed(&case.id())).collect();
-    let seconds = cases.iter().map(|case| case.seconds).sum();
-    console::note(common, &format!("{} cases to run, estimated {} on two cores", cases.len(), duration(seconds)));
-    let workspace = folders::workspace();
-    let reference_data = workspace.join("reference-data");
+    console::note(common, &estimate(&cases, "cases to run"));
     let out = Arc::new(OutputFolder::open(out, "verify")?);
-    let options = Options {
-        out: Arc::clone(&out),
-        reference_data: &reference_data,
-        environment: environment(&workspace),
-        program: &built::program(),
-        resume: true,
-        case_timeout: None,
-        seconds: &remembered(),
-    };
-    let results = carry_out(&cases, None, &options, common)?;
+    let environment = environment(&folders::workspace());
+    let results = carry_out(&cases, None, (&out, environment), (true, None), common)?;
     let rendered = fisura_reports::render(out.path(), &out).map(drop).map_err(Failure::from);
     Ok((results, rendered.and(out.finish().map_err(Failure::from))))
 }

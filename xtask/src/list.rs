@@ -3,14 +3,16 @@
 use std::collections::BTreeSet;
 
 use fisura_reports::number::duration;
+use fisura_reports::template::filled;
 use fisura_verification::output::foreign::line;
 use fisura_verification::scene::SceneFileError;
 use fisura_verification::scene::document::Node;
 use fisura_verification::suite::prepare::{Prepared, prepare};
 use fisura_verification::suite::{Case, Selection, Tier, read_cases, select};
+use minijinja::value::Serde;
 use serde_json::{Value, json};
 
-use crate::cli::{Common, Format};
+use crate::cli::Common;
 use crate::console;
 use crate::exit::Exit;
 use crate::failure::Failure;
@@ -45,16 +47,13 @@ pub fn list(args: &Args, common: &Common) -> Result<Exit, Failure> {
     if sound.is_empty() && wrong.is_empty() {
         return Err(Failure::new(Exit::NothingSelected, "no case matches").help("`cargo xtask list` lists all cases"));
     }
-    let cases: Vec<&Case> = sound.iter().map(|(case, _)| case).collect();
-    match common.format {
-        Format::Json => {
-            let entries: Vec<Value> = sound.iter().map(|(case, prepared)| entry(case, prepared)).collect();
-            let suites: BTreeSet<&str> = cases.iter().map(|case| case.suite.as_str()).collect();
-            console::json(&json!({ "suites": suites, "tiers": ["quick", "full"], "cases": entries }));
-        }
-        Format::Text if args.case.is_some() => console::result(&sound.iter().map(expanded).collect::<String>()),
-        Format::Text => console::result(&text(&cases)),
-    }
+    let entries: Vec<Value> = sound.iter().map(|(case, prepared)| entry(case, prepared)).collect();
+    let suites: BTreeSet<&str> = sound.iter().map(|(case, _)| case.suite.as_str()).collect();
+    let shown = json!({ "suites": suites, "tiers": ["quick", "full"], "cases": entries });
+    console::show(common, &shown, || match args.case {
+        Some(_) => sound.iter().map(expanded).collect(),
+        None => filled("list.txt", include_str!("texts/list.txt"), Serde(&shown)),
+    });
     Ok(wrong.into_iter().fold(Exit::Done, |_, error| Failure::from(error).show()))
 }
 
@@ -88,21 +87,4 @@ fn expanded((case, prepared): &(Case, Prepared)) -> String {
     let (seconds, models) = (duration(case.seconds), case.models.join(", "));
     let head = format!("{}: {} [{models}], {}, {seconds}\n", line(&case.id()), line(&case.claim), case.tier);
     head + &records.collect::<String>()
-}
-
-fn text(cases: &[&Case]) -> String {
-    let ids: Vec<String> = cases.iter().map(|case| line(&case.id()).into_owned()).collect();
-    let width = ids.iter().map(|id| id.chars().count()).max().unwrap_or(0);
-    let mut out = String::new();
-    for (case, id) in cases.iter().zip(&ids) {
-        let (tier, seconds) = (case.tier.to_string(), duration(case.seconds));
-        let models = case.models.join(", ");
-        out.push_str(&format!("{id:width$}  {tier:5}  {seconds:>10}  {} [{models}]\n", line(&case.claim)));
-    }
-    for tier in ["quick", "full"] {
-        let of_tier = cases.iter().filter(|case| case.tier.to_string() == tier);
-        let (count, seconds) = of_tier.fold((0, 0.0), |(n, s), case| (n + 1, s + case.seconds));
-        out.push_str(&format!("{tier}: {count} cases, about {}\n", duration(seconds)));
-    }
-    out
 }

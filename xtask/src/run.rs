@@ -7,16 +7,21 @@ use std::time::Duration;
 
 use fisura::scene::Scene;
 use fisura::simulation::Simulation;
-use fisura_reports::number::{duration, plain};
+use fisura_reports::template::filled;
 use fisura_verification::output::OutputFolder;
 use fisura_verification::scene_run::checkpoint::{self, CHECKPOINT, Place, Stored};
-use fisura_verification::scene_run::{Keep, OnFrame, Outcome, Progress, SceneRun, Summary, run_scene_kept};
+use fisura_verification::scene_run::{Keep, OnFrame, Outcome, Progress, SceneRun, run_scene_kept};
 use indicatif::ProgressBar;
+use minijinja::context;
+use minijinja::value::Serde;
 
 use crate::cli::{Common, SceneArgs};
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::{built, console, folders, interrupt, pictures, progress, scene_input, vtk};
+
+/// The summary for people.
+const TEXT: &str = include_str!("texts/run.txt");
 
 /// Arguments of `run`.
 #[derive(Debug, clap::Args)]
@@ -118,7 +123,10 @@ pub fn run_into(
         folder.remove(&checkpoint)?; // a run that reached its end needs none
     }
     folder.finish()?;
-    console::show(common, &run.summary, || text(&run.summary, folder.path(), &files));
+    console::show(common, &run.summary, || {
+        let folder = folder.path().display().to_string();
+        filled("run.txt", TEXT, context! { summary => Serde(&run.summary), folder, files })
+    });
     match &run.breakdown {
         None => {
             if !undrawn.is_empty() {
@@ -243,44 +251,4 @@ fn write(
         }
     }
     Ok((files, undrawn))
-}
-
-fn text(summary: &Summary, folder: &Path, files: &[String]) -> String {
-    let count = |n: usize| n.to_string();
-    let seconds = |s: Option<f64>| s.map_or("-".to_string(), |s| format!("{} s", plain(s, 5)));
-    let mut rows = vec![
-        ("title", summary.title.clone()),
-        ("models", summary.models.join(", ")),
-        ("particles", count(summary.particles)),
-        ("control points", count(summary.control_points)),
-        ("steps", format!("{} of {}", count(summary.steps), count(summary.planned_steps))),
-        ("time step", format!("{}, critical {}", seconds(summary.time_step_s), seconds(summary.critical_step_s))),
-        ("wall time", wall_time(summary)),
-    ];
-    rows.extend(summary.peak_memory_mb.map(|mb| ("peak memory", format!("{} MB", plain(mb, 3)))));
-    let energies = summary.final_energies_j.iter();
-    let energies: Vec<String> = energies.map(|(name, e)| format!("{} {}", label(name), plain(*e, 5))).collect();
-    rows.push(("final energies (J)", energies.join(", ")));
-    rows.push(("closure", format!("{} of the largest energy", plain(summary.largest_closure_over_largest_energy, 3))));
-    rows.push(("written to", folder.display().to_string()));
-    rows.push(("files", files.join(", ")));
-    console::table(&rows)
-}
-
-fn label(column: &str) -> String {
-    column.trim_end_matches("_j").replace('_', " ")
-}
-
-fn wall_time(summary: &Summary) -> String {
-    let stages = summary.stages_s;
-    let stages = [
-        ("preparation", stages.preparation),
-        ("steps", stages.steps),
-        ("samples", stages.samples),
-        ("pictures", stages.pictures),
-    ];
-    let stages: Vec<String> = stages.iter().map(|(name, s)| format!("{name} {}", duration(*s))).collect();
-    let per_step = summary.ns_per_particle_step;
-    let per_step = per_step.map(|ns| format!("; {} ns per particle and step", plain(ns, 3))).unwrap_or_default();
-    format!("{} ({}){per_step}", duration(summary.wall_s), stages.join(", "))
 }

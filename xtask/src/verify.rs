@@ -9,7 +9,7 @@ use fisura_reports::annotations::render_annotations;
 use fisura_reports::number::duration;
 use fisura_reports::text::render_text;
 use fisura_verification::output::OutputFolder;
-use fisura_verification::record::{Record, ResultSet, Status};
+use fisura_verification::record::{Environment, Record, ResultSet, Status};
 use fisura_verification::reference::Library;
 use fisura_verification::suite::part::{Invocation, Plan};
 use fisura_verification::suite::partition::Slice;
@@ -49,11 +49,6 @@ pub struct Args {
     set: Vec<String>,
 }
 
-/// How long the cases took when they ran last on this machine.
-pub fn remembered() -> Seconds {
-    Seconds::remembered(folders::workspace().join("target/fisura/seconds.json"))
-}
-
 fn seconds(text: &str) -> Result<Duration, String> {
     let seconds = text.parse::<f64>().map_err(|error| error.to_string())?;
     let duration = Duration::try_from_secs_f64(seconds).map_err(|error| error.to_string())?;
@@ -81,38 +76,43 @@ pub fn verify(args: &Args, common: &Common) -> Result<Exit, Failure> {
         };
         part = Some((slice, Plan::new(&cases, slice.count, invocation)?));
         cases = slice.take(cases);
-        let seconds = cases.iter().map(|case| case.seconds).sum();
-        console::note(common, &format!("{slice}: {} cases, estimated {} on two cores", cases.len(), duration(seconds)));
+        console::note(common, &format!("{slice}: {}", estimate(&cases, "cases")));
     } else if args.tier == Tier::Full {
-        let seconds = cases.iter().map(|case| case.seconds).sum();
-        console::note(common, &format!("{} cases, estimated {} on two cores", cases.len(), duration(seconds)));
+        console::note(common, &estimate(&cases, "cases"));
     }
     let folder = Arc::new(folders::output(common, "verify")?);
-    let options = Options {
-        out: Arc::clone(&folder),
-        reference_data: &reference_data,
-        environment,
-        program: &built::program(),
-        resume: args.tier == Tier::Full,
-        case_timeout: args.case_timeout,
-        seconds: &remembered(),
-    };
-    let results = carry_out(&cases, part, &options, common)?;
+    let stops = (args.tier == Tier::Full, args.case_timeout);
+    let results = carry_out(&cases, part, (&folder, environment), stops, common)?;
     conclude(&results, &folder, common)
 }
 
-/// Runs cases into a folder whose report says until [`conclude`] that they are unfinished. An interrupt ends
-/// the process; what is finished then is in the report.
+/// How many cases, by what they are called, and how long they take in all.
+pub fn estimate(cases: &[Case], what: &str) -> String {
+    let seconds = cases.iter().map(|case| case.seconds).sum();
+    format!("{} {what}, estimated {} on two cores", cases.len(), duration(seconds))
+}
+
+/// Runs cases into a folder whose report says until [`conclude`] that they are unfinished, taking up what is
+/// finished if that is asked for. An interrupt ends the process; what is finished then is in the report.
 ///
 /// # Errors
 /// A wrong case, files that cannot be read or written.
 pub fn carry_out(
     cases: &[Case],
     part: Option<(Slice, Plan)>,
-    options: &Options,
+    (out, environment): (&Arc<OutputFolder>, Environment),
+    (resume, case_timeout): (bool, Option<Duration>),
     common: &Common,
 ) -> Result<ResultSet, Failure> {
-    let out = &*options.out;
+    let options = &Options {
+        out: Arc::clone(out),
+        reference_data: &folders::workspace().join("reference-data"),
+        environment,
+        program: &built::program(),
+        resume,
+        case_timeout,
+        seconds: &Seconds::remembered(folders::workspace().join("target/fisura/seconds.json")),
+    };
     let session = Session::begin(cases, part, options)?;
     fisura_reports::render(out.path(), out)?;
     let watch = Watch::new(cases, options.seconds, common);

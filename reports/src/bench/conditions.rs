@@ -7,16 +7,14 @@ use super::{Exhibit, Records, range};
 use crate::number::{plain, pretty};
 
 /// Steps with 1, 2, … threads.
-pub fn threads(records: Records) -> Vec<Exhibit> {
+pub fn threads(records: Records) -> Option<Exhibit> {
     let all = records.below("threads/");
     let mut numbers: Vec<usize> = all.iter().map(|r| r.threads).collect();
     numbers.sort_unstable();
     numbers.dedup();
     let mut scenes: Vec<&str> = all.iter().filter_map(|r| r.id.split('/').nth(1)).collect();
     scenes.dedup();
-    if scenes.is_empty() {
-        return Vec::new();
-    }
+    scenes.first()?;
     let of = |scene: &str, threads: usize| records.get(&format!("threads/{scene}/{threads}"));
     let row = |scene: &&str| {
         let label = of(scene, 1).map_or(scene.to_string(), |r| r.label.clone());
@@ -47,17 +45,15 @@ pub fn threads(records: Records) -> Vec<Exhibit> {
     let reading = scenes.iter().filter_map(sentence).collect::<Vec<_>>().join(" ");
     let caption =
         "Wall time, affected by other load on the machine. Bars: median; whiskers: minimum and maximum of the rounds";
-    vec![chart.exhibit(caption, reading)]
+    Some(chart.exhibit(caption, reading))
 }
 
 /// Most time of a sweep over that of the larger ceiling.
 const CEILING: f64 = 1.2;
 
 /// Bandwidth, arithmetic, and how far the elastic sweep is from both.
-pub fn ceilings(records: Records) -> Vec<Exhibit> {
-    let (Some(triad), Some(add)) = (records.get("ceilings/triad"), records.get("ceilings/multiply-add")) else {
-        return Vec::new();
-    };
+pub fn ceilings(records: Records) -> Option<Exhibit> {
+    let (triad, add) = (records.get("ceilings/triad")?, records.get("ceilings/multiply-add")?);
     let (byte, flop) = (triad.ns_per_unit.median, add.ns_per_unit.median);
     let mut rows = vec![rate(triad, "GB/s"), rate(add, "GF/s")];
     let mut notes = Vec::new();
@@ -68,17 +64,12 @@ pub fn ceilings(records: Records) -> Vec<Exhibit> {
         let median = sweep.ns_per_unit.median;
         let bound = if by_flops > by_bytes { "arithmetic" } else { "bandwidth" };
         let distance = median / by_flops.max(by_bytes);
+        let [arithmetic, bandwidth, transferred] = [by_flops, by_bytes, bytes].map(|value| plain(value, 3));
         rows.push(vec![
             sweep.label.clone(),
             format!("{} ns per point", plain(median, 3)),
             range(sweep.ns_per_unit),
-            format!(
-                "{} ns by {} operations, {} ns by {} bytes",
-                plain(by_flops, 3),
-                plain(flops, 4),
-                plain(by_bytes, 3),
-                plain(bytes, 3)
-            ),
+            format!("{arithmetic} ns by {} operations, {bandwidth} ns by {transferred} bytes", plain(flops, 4)),
         ]);
         let degree = sweep.number("degree").unwrap_or(f64::NAN);
         let beyond = if distance < 1.0 { ", and is faster than the measured ceiling" } else { "" };
@@ -98,7 +89,7 @@ pub fn ceilings(records: Records) -> Vec<Exhibit> {
         notes.join("; ")
     );
     let head = ["", "median", "rounds", "ceilings"];
-    vec![Exhibit::grid("Ceilings of this machine on one thread", &head, rows, note)]
+    Some(Exhibit::grid("Ceilings of this machine on one thread", &head, rows, note))
 }
 
 /// A ceiling as a rate.
@@ -109,7 +100,7 @@ fn rate(record: &BenchRecord, unit: &str) -> Vec<String> {
 }
 
 /// Another checkout on the same scenes.
-pub fn baseline(records: Records) -> Vec<Exhibit> {
+pub fn baseline(records: Records) -> Option<Exhibit> {
     let row = |ours: &&BenchRecord| -> Option<Vec<String>> {
         let theirs = records.find(&format!("{}other", ours.id.strip_suffix("this")?))?;
         let difference = |r: &BenchRecord| r.error.as_ref().map_or("–".into(), |error| pretty(error.value, 2));
@@ -120,24 +111,19 @@ pub fn baseline(records: Records) -> Vec<Exhibit> {
     };
     let ours: Vec<&BenchRecord> = records.0.iter().filter(|r| r.family == "baseline").collect();
     let rows: Vec<Vec<String>> = ours.iter().filter_map(row).collect();
-    let Some(other) = ours.iter().find_map(|r| r.parameters.get("checkout")?.as_str().filter(|path| *path != "."))
-    else {
-        return Vec::new();
-    };
+    let other = ours.iter().find_map(|r| r.parameters.get("checkout")?.as_str().filter(|path| *path != "."))?;
     let head = ["scene", "this checkout", "other checkout", "ratio", "energies, this", "energies, other", "verified"];
     let note = format!(
         "The other checkout is {other}. Times are processor times of whole processes on all threads, run alternately. Energies: largest \
          difference at the end from a run of this checkout with a phase-field tolerance of 1e-10, over the largest energy."
     );
-    vec![Exhibit::grid("Another checkout on the same scenes", &head, rows, note)]
+    Some(Exhibit::grid("Another checkout on the same scenes", &head, rows, note))
 }
 
 /// Time and memory of scenes by what they model.
-pub fn scenes(records: Records) -> Vec<Exhibit> {
+pub fn scenes(records: Records) -> Option<Exhibit> {
     let all: Vec<&BenchRecord> = records.0.iter().filter(|record| record.family == "scenes").collect();
-    if all.is_empty() {
-        return Vec::new();
-    }
+    all.first()?;
     let bytes = |record: &BenchRecord| record.memory_bytes as f64 / record.number("particles").unwrap_or(f64::NAN);
     let text = |record: &BenchRecord, name: &str| match record.parameters.get(name) {
         Some(serde_json::Value::String(s)) => s.clone(),
@@ -186,7 +172,7 @@ pub fn scenes(records: Records) -> Vec<Exhibit> {
             plain(100.0 * half.memory_bytes as f64 / whole.memory_bytes as f64, 3)
         ));
     }
-    vec![Exhibit::grid("Scenes by their models", &head, all.iter().map(row), notes.join(" "))]
+    Some(Exhibit::grid("Scenes by their models", &head, all.iter().map(row), notes.join(" ")))
 }
 
 /// Stored ratios to other codes, carried over by the kernels; and the program of the user, if it was run.

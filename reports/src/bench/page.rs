@@ -5,10 +5,10 @@ use fisura_verification::output::history::format_number;
 use minijinja::value::Serde;
 use minijinja::{Environment, Value, context};
 
-use super::{Exhibit, Grid, Plot, Section, range};
-use crate::markdown::cell;
+use super::{Exhibit, Plot, Section, range};
 use crate::number::plain;
 use crate::svg::slug;
+use crate::template::filled;
 
 const TEMPLATE: &str = include_str!("../../templates/bench.html");
 
@@ -64,43 +64,13 @@ fn conditions(set: &BenchSet) -> String {
     format!("{size} run on {} with {} threads, {}; commit {commit}{dirty}; {}", e.cpu, e.threads, e.started, e.rustc)
 }
 
-/// The report with links to its figures.
-pub fn markdown(set: &BenchSet, sections: &[Section]) -> String {
-    let mut out = format!("# Speed against error\n\n{}.\n", cell(&conditions(set)));
-    for section in sections {
-        out.push_str(&format!("\n## {}\n", section.title));
-        for exhibit in &section.exhibits {
-            match exhibit {
-                Exhibit::Plot(plot) => out.push_str(&of_plot(plot)),
-                Exhibit::Grid(grid) => out.push_str(&of_grid(grid)),
-            }
-        }
-    }
-    out
-}
-
-fn of_plot(plot: &Plot) -> String {
-    let picture = match &plot.svg {
-        Ok(_) => format!("![{}]({})", cell(&plot.title), file(plot)),
-        Err(error) => format!("Not drawn: {}", cell(&error.to_string())),
-    };
-    let [reading, title, caption] = [&plot.reading, &plot.title, &plot.caption].map(|text| cell(text));
-    format!("\n{picture}\n\n{reading}\n\n*{title}. {caption}.*\n")
-}
-
-fn of_grid(grid: &Grid) -> String {
-    let line = |cells: &[String]| format!("| {} |\n", cells.iter().map(|c| cell(c)).collect::<Vec<_>>().join(" | "));
-    let rule = format!("|{}\n", "---|".repeat(grid.head.len()));
-    let rows: String = grid.rows.iter().map(|row| line(row)).collect();
-    format!("\n### {}\n\n{}{rule}{rows}\n{}\n", cell(&grid.title), line(&grid.head), cell(&grid.note))
-}
-
-/// An exhibit as the template takes it: only a table has a head.
-fn shown(exhibit: &Exhibit) -> Value {
-    match exhibit {
+/// What the templates take. Of an exhibit, only a table has a head.
+fn values(set: &BenchSet, sections: &[Section]) -> Value {
+    let shown = |exhibit: &Exhibit| match exhibit {
         Exhibit::Plot(plot) => context! {
             title => &plot.title,
             svg => plot.svg.as_deref().ok(),
+            file => file(plot),
             error => plot.svg.as_ref().err().map(ToString::to_string),
             caption => &plot.caption,
             text => &plot.reading,
@@ -108,7 +78,17 @@ fn shown(exhibit: &Exhibit) -> Value {
         Exhibit::Grid(grid) => {
             context! { title => &grid.title, text => &grid.note, head => &grid.head, rows => Serde(&grid.rows) }
         }
-    }
+    };
+    let part = |section: &Section| {
+        let exhibits: Value = section.exhibits.iter().map(shown).collect();
+        context! { anchor => slug(&section.title), title => &section.title, exhibits }
+    };
+    context! { conditions => conditions(set), parts => sections.iter().map(part).collect::<Value>() }
+}
+
+/// The report with links to its figures.
+pub fn markdown(set: &BenchSet, sections: &[Section]) -> String {
+    filled("bench.md", include_str!("../../templates/bench.md"), values(set, sections))
 }
 
 /// The page, complete in itself.
@@ -116,12 +96,5 @@ fn shown(exhibit: &Exhibit) -> Value {
 /// # Errors
 /// Only if the template cannot be filled, which has no cause in the records.
 pub fn html(set: &BenchSet, sections: &[Section]) -> Result<String, minijinja::Error> {
-    let mut environment = Environment::new();
-    environment.add_template("bench.html", TEMPLATE)?;
-    let part = |section: &Section| {
-        let exhibits: Value = section.exhibits.iter().map(shown).collect();
-        context! { anchor => slug(&section.title), title => &section.title, exhibits }
-    };
-    let page = context! { conditions => conditions(set), parts => sections.iter().map(part).collect::<Value>() };
-    environment.get_template("bench.html")?.render(page)
+    Environment::new().render_named_str("bench.html", TEMPLATE, values(set, sections))
 }

@@ -8,6 +8,7 @@ use super::{Exhibit, Records};
 use crate::number::plain;
 use crate::series::SeriesSet;
 use crate::svg::slug;
+use crate::view::by_key;
 
 /// Bytes per point that a block with fracture may have.
 const BYTES: f64 = 250.0;
@@ -18,10 +19,7 @@ pub fn exhibits(records: Records) -> Vec<Exhibit> {
     if all.is_empty() {
         return Vec::new();
     }
-    let mut blocks: Vec<&str> = all.iter().map(|r| r.label.as_str()).collect();
-    blocks.dedup();
-    let of = |label: &str| all.iter().copied().filter(|r| r.label == label).collect::<Vec<_>>();
-    let blocks: Vec<(&str, Vec<&BenchRecord>)> = blocks.into_iter().map(|label| (label, of(label))).collect();
+    let blocks = by_key(all.into_iter().map(|record| (record.label.as_str(), record)));
     let times: Vec<String> = blocks.iter().filter_map(|(label, records)| flatness(label, records)).collect();
     let memory: Vec<String> = blocks.iter().filter_map(|(label, records)| weight(label, records)).collect();
     vec![
@@ -67,17 +65,11 @@ fn weight(label: &str, records: &[&BenchRecord]) -> Option<String> {
         _ => String::new(),
     };
     let peak = last.number("peak_bytes").map_or(String::new(), |peak| {
-        format!(
-            "; the peak of the process is {} bytes per point, {} GB in total",
-            plain(peak / points(last), 3),
-            plain(peak / 1e9, 3)
-        )
+        let [each, all] = [peak / points(last), peak / 1e9].map(|value| plain(value, 3));
+        format!("; the peak of the process is {each} bytes per point, {all} GB in total")
     });
-    Some(format!(
-        "{label}: {} bytes per point counted at {} points{verdict}{peak}.",
-        plain(bytes(last), 3),
-        plain(points(last), 3)
-    ))
+    let [counted, points] = [bytes(last), points(last)].map(|value| plain(value, 3));
+    Some(format!("{label}: {counted} bytes per point counted at {points} points{verdict}{peak}."))
 }
 
 fn plot(
@@ -101,45 +93,4 @@ fn plot(
     let title = format!("Blocks from 10⁴ points: {axis}");
     let caption = "Square blocks, p = 2 with 2 × 2 points per span, one thread";
     Exhibit::log_log([&id, &title, caption], ["points", axis], curves, Vec::new(), (&set, reading.join(" ")))
-}
-
-#[cfg(test)]
-mod tests {
-    use fisura_verification::bench::record::Sample;
-
-    use super::*;
-
-    fn record(cells: usize, ns: f64, bytes: u64) -> BenchRecord {
-        let points = 4.0 * (cells * cells) as f64;
-        let mut record = BenchRecord::new(format!("scale/cracking/{cells}"), "cracking", points, "particle-step")
-            .with("particles", points)
-            .with("phase_field_bytes", 1.0);
-        record.samples = vec![Sample { wall_s: 1e-9 * ns * points, cpu_s: 1e-9 * ns * points }];
-        record.memory_bytes = bytes * points as u64;
-        record.verify(true, "");
-        record.summarise();
-        record
-    }
-
-    #[test]
-    fn large_blocks_are_compared_and_heavy_ones_named() {
-        let heavy = record(2000, 25.0, 300).with("peak_bytes", 1.6e7 * 320.0);
-        let records = [record(100, 10.0, 200), record(200, 12.5, 200), record(800, 20.0, 200), heavy];
-        let exhibits = exhibits(Records(&records));
-        let readings: Vec<&str> = exhibits
-            .iter()
-            .map(|e| match e {
-                Exhibit::Plot(plot) => plot.reading.as_str(),
-                Exhibit::Grid(_) => "",
-            })
-            .collect();
-        let both =
-            "25 ns at 1.6e7 points, 2 times the 12.5 ns at 160000 points and 1.25 times the 20 ns at 2.56e6 points";
-        assert!(readings[0].contains(both), "{readings:?}");
-        assert!(
-            readings[1].contains("missed") && readings[1].contains("the process is 320 bytes per point"),
-            "{readings:?}"
-        );
-        assert!(super::exhibits(Records(&[])).is_empty());
-    }
 }

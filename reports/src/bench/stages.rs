@@ -19,36 +19,21 @@ pub fn exhibits(records: Records) -> Vec<Exhibit> {
     if steps.is_empty() {
         return Vec::new();
     }
-    let per_step = "time per particle-step (ns)";
+    let of_step = |names: &[String], id: &str, title: &str, reading: String| {
+        bars(records, names, ["stages/p", id, title, "time per particle-step (ns)"], 1.0, reading)
+    };
     let mut exhibits = vec![
-        bars(
-            records,
-            "stages/p",
-            &phases,
-            "timing/stages",
-            "Phases of the step",
-            per_step,
-            1.0,
-            reading_of_phases(records),
-        ),
-        bars(records, "stages/p", &steps, "timing/steps", "Whole steps", per_step, 1.0, reading_of_steps(records)),
+        of_step(&phases, "timing/stages", "Phases of the step", reading_of_phases(records)),
+        of_step(&steps, "timing/steps", "Whole steps", reading_of_steps(records)),
     ];
     exhibits.extend(shares(records));
     exhibits
 }
 
-/// A bar for each phase, p = 2 and 3 side by side.
-#[expect(clippy::too_many_arguments, reason = "the parts of one figure")]
-fn bars(
-    records: Records,
-    prefix: &str,
-    names: &[String],
-    id: &str,
-    title: &str,
-    axis: &str,
-    scale: f64,
-    reading: String,
-) -> Exhibit {
+/// A bar for each phase, p = 2 and 3 side by side; in words the ids of the records up to the degree, id and
+/// title of the figure and its axis.
+fn bars(records: Records, names: &[String], words: [&str; 4], scale: f64, reading: String) -> Exhibit {
+    let [prefix, id, title, axis] = words;
     let of = |degree: usize, name: &str| records.get(&format!("{prefix}{degree}/{name}"));
     let row = |name: &String| {
         let label = of(DEGREES[0], name).map_or(name.clone(), |r| r.label.clone());
@@ -170,5 +155,5 @@ fn solves_of(records: Records, spans: usize) -> Option<Exhibit> {
     let axis = "time of a solve from c = 1, factorisation included (ms)";
     let length = if spans == 1 { "h = l0" } else { "h = l0/2" };
     let (id, title) = (format!("timing/solves-l{spans}"), format!("Phase field of a cold crack, {length}"));
-    Some(bars(records, "solves/p", &names, &id, &title, axis, 1e-6, reading))
+    Some(bars(records, &names, ["solves/p", &id, &title, axis], 1e-6, reading))
 }

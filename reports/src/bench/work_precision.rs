@@ -97,14 +97,12 @@ pub(super) fn lines<'a>(records: impl IntoIterator<Item = &'a BenchRecord>) -> V
 /// The diagrams of the manufactured problem: a figure for each group of curves and each cost.
 pub fn exhibits(records: Records) -> Vec<Exhibit> {
     let all = records.below("work-precision/");
-    let mut groups: Vec<&str> = all.iter().filter_map(|r| r.parameters.get("group")?.as_str()).collect();
-    groups.dedup();
+    let groups = by_key(all.iter().filter_map(|r| Some((r.parameters.get("group")?.as_str()?, *r))));
     let mut exhibits = Vec::new();
     for cost in Cost::ALL {
         let front = Line { label: "front of all methods".into(), records: frontier(&all, cost) };
-        for group in &groups {
-            let own = all.iter().copied().filter(|r| r.parameters.get("group").and_then(|g| g.as_str()) == Some(group));
-            let lines = lines(own);
+        for (group, records) in &groups {
+            let lines = lines(records.iter().copied());
             if lines.is_empty() {
                 continue;
             }

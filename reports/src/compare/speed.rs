@@ -8,7 +8,7 @@ use std::collections::{HashMap, HashSet};
 use fisura_verification::record::{Record, ResultSet};
 use serde::Serialize;
 
-use super::{Change, Effect};
+use super::{Change, Effect, graded};
 use crate::view::{run_id, runs, timing};
 
 /// Times below this in both results are noise, s.
@@ -132,16 +132,7 @@ fn judge(run: String, base_s: f64, new_s: f64, spread: f64) -> SpeedChange {
     let ratio = new_s / base_s;
     let size = ratio.ln().abs();
     let beyond = |(least, spreads): (f64, f64)| size > f64::max(least.ln(), spreads * spread);
-    let change = match (beyond(MINOR), beyond(MAJOR)) {
-        (_, true) => Change::Major,
-        (true, false) => Change::Minor,
-        (false, false) => Change::Unchanged,
-    };
-    let effect = match change {
-        Change::Unchanged => Effect::Neutral,
-        _ if ratio > 1.0 => Effect::Worse,
-        _ => Effect::Better,
-    };
+    let (change, effect) = graded(beyond(MINOR), beyond(MAJOR), ratio > 1.0);
     SpeedChange { run, base_s, new_s, ratio, change, effect }
 }
 

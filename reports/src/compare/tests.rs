@@ -31,54 +31,43 @@ fn a_set_against_itself_is_unchanged() {
 }
 
 #[test]
-fn a_verdict_that_changes_is_major_either_way() {
-    let base = record(3.0, None, Some(10.0));
-    assert_eq!(changed(&base, 11.0), (Change::Major, Effect::Worse));
-    assert_eq!(changed(&record(11.0, None, Some(10.0)), 3.0), (Change::Major, Effect::Better));
-    let broken = Record { value: None, status: Status::Error, ..base.clone() };
-    assert_eq!(accuracy(&base, &broken).0, Change::Major);
+fn changes_count_by_verdict_tolerance_and_room() {
+    use Change::{Major, Minor, Unchanged};
+    use Effect::{Better, Neutral, Worse};
+    let [at_most, closure] = [10.0, 1e-12].map(|max| move |value: f64| record(value, None, Some(max)));
+    let band = |value: f64| record(value, Some(2.9), Some(3.5));
+    let reference = Some(Reference::new(Some(4.0), ReferenceKind::Theory, "p + 1"));
+    let order = Record { reference, ..record(3.99, Some(3.9), None) };
+    let free = record(0.25, None, None);
+    for (base, value, expected, what) in [
+        (at_most(3.0), 11.0, (Major, Worse), "a verdict is lost"),
+        (at_most(11.0), 3.0, (Major, Better), "a verdict is gained"),
+        (closure(3e-16), 9e-16, (Unchanged, Neutral), "round-off far inside"),
+        (closure(3e-16), 1e-13, (Minor, Worse), "a tenth of the tolerance"),
+        (closure(3e-16), 6e-13, (Major, Worse), "more than half of it"),
+        (at_most(9.5), 9.8, (Minor, Worse), "60 % of the room, but 3 % of the tolerance"),
+        (at_most(9.5), 5.0, (Minor, Better), "away from the bound"),
+        (band(3.05), 3.051, (Unchanged, Neutral), "next to nothing"),
+        (band(3.05), 2.95, (Major, Worse), "two thirds of the room, a third of the tolerance"),
+        (band(3.05), 3.2, (Minor, Better), "to the middle"),
+        (order, 3.93, (Major, Worse), "the tolerance is 0.1"),
+        (free.clone(), 0.25 * (1.0 + 1e-9), (Unchanged, Neutral), "round-off"),
+        (free, 2.5, (Minor, Neutral), "a value without bounds is never major"),
+    ] {
+        assert_eq!(changed(&base, value), expected, "{what}");
+    }
 }
 
 #[test]
-fn moves_within_bounds_count_by_tolerance_and_room() {
-    let closure = record(3e-16, None, Some(1e-12));
-    assert_eq!(changed(&closure, 9e-16).0, Change::Unchanged, "round-off far inside");
-    assert_eq!(changed(&closure, 1e-13), (Change::Minor, Effect::Worse));
-    assert_eq!(changed(&closure, 6e-13), (Change::Major, Effect::Worse));
-    let close = record(9.5, None, Some(10.0));
-    assert_eq!(changed(&close, 9.8), (Change::Minor, Effect::Worse), "60 % of the room, but 3 % of the tolerance");
-    assert_eq!(changed(&close, 5.0), (Change::Minor, Effect::Better));
-    let band = record(3.05, Some(2.9), Some(3.5));
-    assert_eq!(changed(&band, 3.051).0, Change::Unchanged);
-    assert_eq!(
-        changed(&band, 2.95),
-        (Change::Major, Effect::Worse),
-        "two thirds of the room, a third of the tolerance"
-    );
-    assert_eq!(changed(&band, 3.2), (Change::Minor, Effect::Better));
-    let mut order = record(3.99, Some(3.9), None);
-    order.reference = Some(Reference::new(Some(4.0), ReferenceKind::Theory, "p + 1"));
-    assert_eq!(changed(&order, 3.93), (Change::Major, Effect::Worse), "the tolerance is 0.1");
-}
-
-#[test]
-fn looser_or_dropped_bounds_do_not_hide_a_loss() {
-    let base = record(9.0, None, Some(10.0));
-    let looser = record(12.0, None, Some(20.0));
-    let (change, effect, why) = accuracy(&base, &looser);
+fn what_broke_down_and_looser_or_dropped_bounds_do_not_hide_a_loss() {
+    let (base, free) = (record(9.0, None, Some(10.0)), record(0.25, None, None));
+    assert_eq!(accuracy(&base, &Record { value: None, status: Status::Error, ..base.clone() }).0, Change::Major);
+    assert_eq!(accuracy(&free, &Record { value: None, ..free.clone() }).0, Change::Minor, "the value is gone");
+    let (change, effect, why) = accuracy(&base, &record(12.0, None, Some(20.0)));
     assert_eq!((change, effect), (Change::Major, Effect::Worse));
     assert!(why.contains("bounds of the base"), "{why}");
     assert_eq!(accuracy(&base, &record(9.0, None, None)).0, Change::Major);
     assert_eq!(accuracy(&base, &record(9.0, None, Some(20.0))).0, Change::Minor, "other bounds, same value");
-}
-
-#[test]
-fn a_value_without_bounds_is_never_major() {
-    let base = record(0.25, None, None);
-    assert_eq!(changed(&base, 0.25 * (1.0 + 1e-9)).0, Change::Unchanged);
-    assert_eq!(changed(&base, 2.5), (Change::Minor, Effect::Neutral));
-    let gone = Record { value: None, ..base.clone() };
-    assert_eq!(accuracy(&base, &gone).0, Change::Minor);
 }
 
 #[test]

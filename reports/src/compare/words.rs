@@ -55,41 +55,30 @@ pub fn render_markdown(sets: &ComparedSets) -> String {
         out.push_str(&format!("{name}: {}{dirty}, {}. ", cell(commit), cell(&environment.cpu)));
     }
     out.push_str(&format!("\n\n{}\n\n", speed(sets)));
-    let mut left_out = 0;
-    let mut line = |out: &mut String, line: String| {
-        if out.len() + line.len() > LIMIT { left_out += 1 } else { out.push_str(&line) }
-    };
+    let mut sections: Vec<(String, Vec<String>)> = Vec::new();
     for (change, word) in LISTED {
-        let records: Vec<&Comparison> = of_change(sets, change).collect();
-        if !records.is_empty() {
-            line(
-                &mut out,
-                format!("## {word}: {}\n\n| | check | base → new | what |\n|---|---|---|---|\n", records.len()),
-            );
+        let row = |r: &Comparison| {
+            format!("| {} | {} | {} | {} |\n", mark(r.effect), code(&r.id), cell(&values(r)), cell(&r.why))
+        };
+        let rows: Vec<String> = of_change(sets, change).map(row).collect();
+        let head = format!("## {word}: {}\n\n| | check | base → new | what |\n|---|---|---|---|\n", rows.len());
+        sections.push((head, rows));
+    }
+    let row = |count: &&WorkChange| {
+        format!("| {} | {} | {} | {} |\n", mark(count.effect), code(&count.run), count.what, counts(count))
+    };
+    let head = "## work\n\n| | run | count | base → new |\n|---|---|---|---|\n".to_string();
+    sections.push((head, changed_counts(sets).iter().map(row).collect()));
+    let row = |run: &&SpeedChange| format!("| {} | {} | {} |\n", mark(run.effect), code(&run.run), times(run));
+    let head = "## speed\n\n| | run | wall time |\n|---|---|---|\n".to_string();
+    sections.push((head, changed_runs(sets).iter().map(row).collect()));
+    let last = sections.len() - 1;
+    let mut left_out = 0;
+    for (at, (head, rows)) in sections.iter().enumerate().filter(|(_, (_, rows))| !rows.is_empty()) {
+        for line in std::iter::once(head).chain(rows) {
+            if out.len() + line.len() > LIMIT { left_out += 1 } else { out.push_str(line) }
         }
-        for r in &records {
-            line(
-                &mut out,
-                format!("| {} | {} | {} | {} |\n", mark(r.effect), code(&r.id), cell(&values(r)), cell(&r.why)),
-            );
-        }
-        out.push_str(if records.is_empty() { "" } else { "\n" });
-    }
-    let changed = changed_counts(sets);
-    if !changed.is_empty() {
-        line(&mut out, "## work\n\n| | run | count | base → new |\n|---|---|---|---|\n".to_string());
-    }
-    for count in &changed {
-        let run = code(&count.run);
-        line(&mut out, format!("| {} | {run} | {} | {} |\n", mark(count.effect), count.what, counts(count)));
-    }
-    out.push_str(if changed.is_empty() { "" } else { "\n" });
-    let runs = changed_runs(sets);
-    if !runs.is_empty() {
-        line(&mut out, "## speed\n\n| | run | wall time |\n|---|---|---|\n".to_string());
-    }
-    for run in &runs {
-        line(&mut out, format!("| {} | {} | {} |\n", mark(run.effect), code(&run.run), times(run)));
+        out.push_str(if at < last { "\n" } else { "" });
     }
     if left_out > 0 {
         out.push_str(&format!("\n{left_out} more lines are omitted; `comparison.json` has all lines.\n"));

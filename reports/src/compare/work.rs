@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use fisura_verification::record::{Record, ResultSet, Work};
 use serde::Serialize;
 
-use super::{Change, Effect};
+use super::{Change, Effect, graded};
 use crate::view::{run_id, runs};
 
 /// A count that changes by more than this part is a minor change …
@@ -61,16 +61,7 @@ fn counts(work: Work) -> [(&'static str, u64); 2] {
 
 fn judge(run: &str, ((what, base), (_, new)): ((&'static str, u64), (&'static str, u64))) -> WorkChange {
     let part = base.abs_diff(new) as f64 / base.max(1) as f64;
-    let change = match part {
-        part if part > MAJOR => Change::Major,
-        part if part > MINOR => Change::Minor,
-        _ => Change::Unchanged,
-    };
-    let effect = match change {
-        Change::Unchanged => Effect::Neutral,
-        _ if new > base => Effect::Worse,
-        _ => Effect::Better,
-    };
+    let (change, effect) = graded(part > MINOR, part > MAJOR, new > base);
     WorkChange { run: run.to_string(), what, base, new, change, effect }
 }
 

@@ -3,6 +3,8 @@
 //! Costs are of other days and machines; they stand on the board only if all results state one, of the same
 //! processor and beside the same time of a kernel, which says that one run measured them.
 
+use std::collections::BTreeMap;
+
 use fisura_verification::judge::Judged;
 use fisura_verification::output::foreign::line;
 use fisura_verification::output::history::Table;
@@ -147,26 +149,27 @@ fn family(name: &str) -> &str {
 }
 
 fn draw(key: &str, title: &str, words: &str, entries: &[Entry<'_>]) -> String {
-    let drawn: Vec<(&Entry<'_>, f64)> = entries.iter().filter_map(|e| Some((e, e.spacing?))).collect();
-    let mut families: Vec<&str> = drawn.iter().map(|(e, _)| family(e.name)).collect();
-    families.sort_unstable();
-    families.dedup();
+    let mut families: BTreeMap<&str, Vec<[f64; 2]>> = BTreeMap::new();
+    for (entry, spacing) in entries.iter().filter_map(|entry| Some((entry, entry.spacing?))) {
+        families.entry(family(entry.name)).or_default().push([spacing, 100.0 * entry.error]);
+    }
     let (mut set, mut curves) = (SeriesSet::default(), Vec::new());
-    for name in families {
-        let of_family = drawn.iter().filter(|(e, _)| family(e.name) == name);
-        let mut points: Vec<(f64, f64)> = of_family.map(|(e, h)| (*h, 100.0 * e.error)).collect();
-        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for (name, mut points) in families {
+        points.sort_by(|a, b| a[0].total_cmp(&b[0]));
         let mut table = Table::new(&["spacing", "error"]);
-        points.iter().for_each(|p| table.push(&[p.0, p.1]));
+        points.iter().for_each(|point| table.push(point));
         let series = format!("series/{}.csv", curves.len());
         curves.push(Curve { style: CurveStyle::Markers, ..Curve::line(name, &series, ["spacing", "error"]) });
         set.insert(series, table);
+    }
+    if curves.is_empty() {
+        return String::new();
     }
     let axes = ["spacing at the crack (mm)", &format!("error of the {words} (%)")].map(Axis::logarithmic);
     let caption = "relative rms over the whole curve against the reference of the declared variant";
     let body = FigureBody::chart(axes, curves, Vec::new());
     let figure = Figure::new("judge", [&format!("board-{key}"), title, caption], body);
-    if drawn.is_empty() { String::new() } else { render_figure(&figure, &set).unwrap_or_default() }
+    render_figure(&figure, &set).unwrap_or_default()
 }
 
 fn sentence(entries: &[Entry<'_>], costs: bool) -> String {

@@ -22,7 +22,6 @@ use fisura_verification::output::OutputFolder;
 use fisura_verification::output::fingerprint::{fingerprint, folder_fingerprint};
 use fisura_verification::output::foreign::{series_files, steers};
 use fisura_verification::record::{Environment, FigureBody, ResultSet};
-use fisura_verification::study::scene::{PictureInfo, RunInfo};
 use fisura_verification::suite::CaseOutcome;
 use fisura_verification::suite::merge::merge;
 use fisura_verification::suite::part::{PART_SCHEMA, Part, Plan};
@@ -161,18 +160,7 @@ fn part(place: &Place) -> Part {
         outcomes.push((id, CaseOutcome { records: records.to_vec(), figures: Vec::new(), runs: Vec::new() }));
     }
     outcomes[0].1.figures = results.figures;
-    outcomes[0].1.runs = vec![RunInfo {
-        suite: "plate".into(),
-        case: "impact".into(),
-        variant: String::new(),
-        label: "p = 2".into(),
-        series: "series/plate.csv".into(),
-        columns: vec!["time_s".into(), "elastic_j".into()],
-        energy_factor: 2.0,
-        resolution: "h = l0".into(),
-        deviations: vec!["half plate".into()],
-        pictures: vec![PictureInfo { time: 8e-5, series: "series/phase.csv".into(), pixels: [20, 8] }],
-    }];
+    outcomes[0].1.runs = serde_json::from_str(include_str!("runs.json")).expect("runs");
     let plan = Plan {
         commit: String::new(),
         sources: SOURCES.into(),

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use fisura_reports::dashboards::files;
+use fisura_reports::metrics::render_metrics;
 use fisura_verification::record::ResultSet;
 use serde_json::{Value, json};
 
@@ -46,20 +47,23 @@ fn bencher_takes_the_metrics() {
 
 /// `extractCustomBenchmarkResult` and `BenchmarkResult` of github-action-benchmark (`src/extract.ts`): an
 /// array of name, value, unit, and range and extra if there are any, in words. It finds the value of the
-/// commit before by the name.
+/// commit before by the name. `metrics.json` has ranges without words as well.
 #[test]
 fn github_action_benchmark_takes_the_metrics() {
-    let files = rendered(&named());
-    for kind in ["deterministic", "timing"] {
+    let mut files = rendered(&named());
+    files.insert("metrics.json".into(), render_metrics(&named()).unwrap());
+    assert!(files["metrics.json"].contains(": wall time\"") && files["metrics.json"].contains(": relative error\""));
+    for file in ["deterministic/github-action-benchmark.json", "timing/github-action-benchmark.json", "metrics.json"] {
         let mut names = BTreeSet::new();
-        for entry in document(&files, &format!("{kind}/github-action-benchmark.json")).as_array().unwrap() {
+        for entry in document(&files, file).as_array().unwrap() {
             for (key, value) in entry.as_object().unwrap() {
                 let holds = match key.as_str() {
-                    "value" => value.as_f64().is_some_and(f64::is_finite),
+                    "value" => value.as_f64().is_some_and(|value| value.is_finite() && value >= 0.0),
+                    "range" if file == "metrics.json" => value.is_string(),
                     "name" | "unit" | "range" | "extra" => value.as_str().is_some_and(|text| !text.is_empty()),
                     _ => false,
                 };
-                assert!(holds, "{kind}: {key} of {entry}");
+                assert!(holds, "{file}: {key} of {entry}");
             }
             assert!(["name", "unit", "value"].iter().all(|key| entry.get(key).is_some()), "{entry}");
             assert!(names.insert(entry["name"].to_string()), "{entry} is there twice");

@@ -10,7 +10,7 @@ use fisura_reports::text::render_text;
 use fisura_reports::{ReportError, bundle, read_results};
 use fisura_verification::output::OutputFolder;
 use fisura_verification::output::foreign::steers;
-use fisura_verification::record::{Figure, FigureBody, ResultSet};
+use fisura_verification::record::{Figure, FigureBody};
 
 use crate::support::{changed, curves, folder, read, render};
 
@@ -174,26 +174,18 @@ fn ranges_without_digits_are_drawn_or_refused() {
 
 #[test]
 fn a_picture_whose_pixels_are_not_those_of_its_series_is_an_error_and_no_panic() {
-    type Edit = fn(&mut [usize; 2]);
-    let fields = |results: &ResultSet| {
-        let is_field = |figure: &&Figure| matches!(figure.body, FigureBody::Field { .. });
-        results.figures.iter().find(is_field).expect("a picture").clone()
-    };
     let write = |folder: &Path, figure: &Figure| {
         let out = tempfile::tempdir().unwrap();
         let out = OutputFolder::open(&out.path().join("out"), "figures").unwrap();
-        let environment = fisura_verification::record::Environment::default();
-        bundle::write((folder, figure), (&out, "drawn"), &environment, std::collections::BTreeMap::new())
+        bundle::write((folder, figure), (&out, "drawn"), &Default::default(), Default::default())
     };
     let folder = folder();
-    let figure = fields(&crate::fixture::results());
+    let figure = crate::fixture::results().figures.remove(1);
     assert!(write(folder.path(), &figure).is_ok());
-    let edits: [Edit; 3] = [|pixels| pixels[0] = 0, |pixels| pixels[1] = 0, |pixels| *pixels = [usize::MAX; 2]];
-    for edit in edits {
+    for size in [[0, 8], [20, 0], [usize::MAX; 2]] {
         let mut figure = figure.clone();
-        if let FigureBody::Field { pixels, .. } = &mut figure.body {
-            edit(pixels);
-        }
+        let FigureBody::Field { pixels, .. } = &mut figure.body else { panic!("a picture") };
+        *pixels = size;
         assert!(write(folder.path(), &figure).unwrap_err().to_string().contains("pixels are declared"));
     }
     let FigureBody::Field { series, .. } = &figure.body else { panic!("a picture") };

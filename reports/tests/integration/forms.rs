@@ -1,12 +1,11 @@
 //! The forms that other programs read: the schema of `results.json`, JUnit, benchmark dashboards, step
 //! summaries.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use fisura_reports::junit::render_junit;
 use fisura_reports::markdown::render_markdown;
-use fisura_reports::metrics::render_metrics;
 use fisura_verification::record::{ResultSet, json_schema};
 use quick_xml::Reader;
 use quick_xml::events::Event;
@@ -161,19 +160,6 @@ fn junit_keeps_to_its_schema_and_counts_right() {
     assert_eq!(found, [13.0, 2.0, 1.0, 3.0], "records, failures, errors of the fixture, and what was not judged");
     let [tests, failures, errors] = ["tests", "failures", "errors"].map(|key| sum(&elements, "testsuites", key));
     assert_eq!([tests, failures, errors, sum(&elements, "testsuite", "skipped")], found);
-}
-
-/// `customSmallerIsBetter` of github-action-benchmark.
-#[test]
-fn metrics_have_the_form_of_benchmark_dashboards() {
-    let metrics: Value = serde_json::from_str(&render_metrics(&crate::fixture::results()).unwrap()).unwrap();
-    let mut names = BTreeSet::new();
-    for metric in metrics.as_array().unwrap() {
-        assert!(metric["value"].as_f64().is_some_and(|v| v >= 0.0), "{metric}");
-        assert!(metric["unit"].is_string() && metric["range"].is_string(), "{metric}");
-        assert!(names.insert(metric["name"].as_str().unwrap().to_string()), "{metric} is there twice");
-    }
-    assert!(names.iter().any(|n| n.ends_with("wall time")) && names.iter().any(|n| n.ends_with("relative error")));
 }
 
 #[test]

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use fisura_reports::bundle::{Bundle, read, redraw};
+use fisura_reports::bundle::{read, redraw};
 use fisura_verification::output::fingerprint::fingerprint;
 use fisura_verification::record::FigureBody;
 use fisura_verification::suite::{Case, load_cases};
@@ -23,34 +23,24 @@ fn stems(ending: &str) -> BTreeSet<String> {
     names.filter_map(|name| name.strip_suffix(ending).map(String::from)).collect()
 }
 
-fn is_picture(bundle: &Bundle) -> bool {
-    matches!(bundle.figure.body, FigureBody::Field { .. })
-}
-
 const REMEDY: &str = "draw it anew with `cargo xtask figures` and copy it, see reports/gallery/README.md";
 
 #[test]
-fn every_figure_has_its_numbers_and_provenance() {
+fn every_figure_has_its_numbers_and_provenance_and_is_drawn_again_to_the_same_bytes() {
     let drawn = stems(".svg");
     assert!(!drawn.is_empty());
     assert_eq!(drawn, stems(".json"));
     assert_eq!(drawn, stems(".caption.txt"));
+    let cases = load_cases(&root().join("verification/cases"), &[]).unwrap();
     let mut owned = BTreeSet::new();
-    for name in &drawn {
-        let bundle = read(&gallery(), name).unwrap();
-        if is_picture(&bundle) {
-            continue;
-        }
-        owned.extend(bundle.data.into_keys().map(|file| file.trim_end_matches(".csv").to_string()));
-    }
-    assert_eq!(owned, stems(".csv"), "numbers without a figure, or the other way round");
-}
-
-#[test]
-fn drawing_again_gives_the_committed_bytes() {
-    for name in stems(".svg") {
+    for name in drawn {
         let bundle = read(&gallery(), &name).unwrap();
-        if is_picture(&bundle) {
+        assert!(!bundle.inputs.is_empty(), "{name} comes from no case");
+        for (id, expected) in &bundle.inputs {
+            let found = cases.iter().find(|case| case.id() == *id).map(Case::inputs);
+            assert_eq!(found.as_ref(), Some(expected), "{name}: the case {id} is another than was run: {REMEDY}");
+        }
+        if matches!(bundle.figure.body, FigureBody::Field { .. }) {
             continue;
         }
         for (file, expected) in &bundle.data {
@@ -59,20 +49,9 @@ fn drawing_again_gives_the_committed_bytes() {
         }
         let committed = std::fs::read_to_string(gallery().join(format!("{name}.svg"))).unwrap();
         assert!(redraw(&gallery(), &bundle).unwrap() == committed, "{name}.svg is out of date: {REMEDY}");
+        owned.extend(bundle.data.into_keys().map(|file| file.trim_end_matches(".csv").to_string()));
     }
-}
-
-#[test]
-fn the_cases_are_those_that_were_run() {
-    let cases = load_cases(&root().join("verification/cases"), &[]).unwrap();
-    for name in stems(".svg") {
-        let inputs = read(&gallery(), &name).unwrap().inputs;
-        assert!(!inputs.is_empty(), "{name} comes from no case");
-        for (id, expected) in inputs {
-            let found = cases.iter().find(|case| case.id() == id).map(Case::inputs);
-            assert_eq!(found.as_ref(), Some(&expected), "{name}: the case {id} is another than was run: {REMEDY}");
-        }
-    }
+    assert_eq!(owned, stems(".csv"), "numbers without a figure, or the other way round");
 }
 
 #[test]

@@ -11,3 +11,4 @@ mod gallery;
 mod render;
 mod support;
 mod vtk;
+mod vtu;

@@ -52,10 +52,6 @@ impl LongEnds {
         let times = critical(&long)? / present;
         (times >= WORTHWHILE).then_some(Self { sides, times })
     }
-
-    pub(super) fn text(&self) -> String {
-        format!("mesh.long_ends = {:?} would make the critical step {:.2} times as long", self.sides, self.times)
-    }
 }
 
 /// Whether the mesh is as fine at an end of an axis as anywhere, and no seeded crack is near.

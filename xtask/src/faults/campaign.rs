@@ -79,7 +79,7 @@ impl<'a> Campaign<'a> {
 
     fn sound_job(&self, case: &Case) -> Option<Job> {
         let known = self.store.get(None, &case.id()).is_some();
-        (!known).then(|| Job { fault: None, cases: vec![(case.id(), sound_limit(case))], set: &[] })
+        (!known).then(|| Job { fault: None, cases: vec![(case.id(), sound_limit(case))] })
     }
 
     /// The cells of a fault that are wanted: on sound cases that pass a site of it.
@@ -92,7 +92,7 @@ impl<'a> Campaign<'a> {
             (missing && passed).then(|| (id, planted_limit(sound.seconds)))
         });
         let cases: Vec<_> = limited.collect();
-        (!cases.is_empty()).then_some(Job { fault: Some(&fault.id), cases, set: &[] })
+        (!cases.is_empty()).then_some(Job { fault: Some(&fault.id), cases })
     }
 
     fn fill(&self, what: &str, jobs: Vec<Job>) -> Result<(), Failure> {

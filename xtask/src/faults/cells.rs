@@ -12,7 +12,7 @@ use fisura_verification::record::Status;
 use fisura_verification::suite::Case;
 use serde::{Deserialize, Serialize};
 
-use super::runner::Ending;
+use super::runner::{Ending, Report};
 use crate::failure::Failure;
 
 /// Below this folder of the output.
@@ -111,12 +111,10 @@ impl<'a> Store<'a> {
 impl Cell {
     fn new(fault: Option<&str>, case: &str, key: String, ending: Ending) -> Self {
         let (fault, case) = (fault.map(String::from), case.to_string());
-        let (ended, report) = match ending {
-            Ok(report) => (None, Some(report)),
-            Err(message) => (Some(message), None),
+        let (ended, Report { seconds, records, passed, .. }) = match ending {
+            Ok(report) => (None, report),
+            Err(message) => (Some(message), Report::default()),
         };
-        let seconds = report.as_ref().map_or(0.0, |report| report.seconds);
-        let (records, passed) = report.map(|report| (report.records, report.passed)).unwrap_or_default();
         let those = |wanted: fn(Status) -> bool| {
             let ids = records.iter().filter(|(_, status)| wanted(*status)).map(|(id, _)| id.clone());
             ids.collect::<Vec<String>>()
@@ -131,38 +129,5 @@ impl Cell {
     /// Whether no check fails.
     pub fn holds(&self) -> bool {
         self.red.is_empty() && self.ended.is_none()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::runner::Report;
-    use super::*;
-
-    fn report(status: Status) -> Ending {
-        let records = vec![("a/b/x".to_string(), Status::Pass), ("a/b/y".to_string(), status)];
-        Ok(Report { case: "a/b".into(), seconds: 0.5, records, passed: vec!["sign".into()] })
-    }
-
-    #[test]
-    fn cells_are_taken_up_until_program_case_or_data_change() {
-        let folder = tempfile::tempdir().unwrap();
-        let keys = |key: &str| BTreeMap::from([("a/b".to_string(), key.to_string())]);
-        let folder = OutputFolder::open(&folder.path().join("out"), "faults").unwrap();
-        let store = Store::open(&folder, &keys("one")).unwrap();
-        store.put(None, "a/b", report(Status::Info)).unwrap();
-        store.put(Some("sign"), "a/b", report(Status::Error)).unwrap();
-        let again = Store::open(&folder, &keys("one")).unwrap();
-        let sound = again.get(None, "a/b").unwrap();
-        assert!(sound.holds() && sound.green == ["a/b/x"] && sound.passed == ["sign"]);
-        let planted = again.get(Some("sign"), "a/b").unwrap();
-        assert!(planted.red == ["a/b/y"] && planted.green.is_empty());
-        for fault in [None, Some("sign")] {
-            again.put(fault, "a/b", Err("it was not done after 30 s".into())).unwrap();
-            assert!(again.get(fault, "a/b").unwrap().ended.is_some());
-            assert_eq!(Store::open(&folder, &keys("one")).unwrap().get(fault, "a/b"), None, "it is tried again");
-        }
-        again.put(None, "a/b", report(Status::Info)).unwrap();
-        assert_eq!(Store::open(&folder, &keys("two")).unwrap().get(None, "a/b"), None);
     }
 }

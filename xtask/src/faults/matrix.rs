@@ -1,8 +1,10 @@
 //! Every fault against every case, and the checks that no fault turns red.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt::Write;
 
+use fisura_reports::template::filled;
+use minijinja::value::Serde;
+use minijinja::{Value, context};
 use serde::Serialize;
 
 use super::cells::Store;
@@ -93,67 +95,26 @@ impl Matrix {
 
     /// What it says, in a few lines.
     pub fn text(&self) -> String {
-        let mut out = self.summary();
-        for idle in self.idle.iter().filter(|idle| idle.reason.is_none()) {
-            let _ = writeln!(out, "passes with every fault, and no reason is given: {}", idle.check);
-        }
-        if self.is_incomplete() {
-            out.push_str("the matrix is not complete: the next run resumes\n");
-        }
-        out
-    }
-
-    fn summary(&self) -> String {
-        let of = |state: State| self.count(|other| other == state);
-        let unexplained = self.idle.iter().filter(|idle| idle.reason.is_none()).count();
-        format!(
-            "{} × {} cells: {} fail, {} pass, {} not applicable, {} ended without records, {} not run\n\
-             {} checks, {} of them in finished cases; {} of these pass with every fault ({} without a reason)\n",
-            self.faults.len(),
-            self.cases.len(),
-            self.count(|state| matches!(state, State::Fail(_))),
-            of(State::Pass),
-            of(State::NotApplicable),
-            of(State::Ended),
-            of(State::NotRun),
-            self.checks,
-            self.decided,
-            self.idle.len(),
-            unexplained,
-        )
+        filled("matrix.txt", include_str!("../texts/matrix.txt"), self.values())
     }
 
     /// Summary, suites, table of cases and faults, and list of the checks that stay green.
     pub fn markdown(&self) -> String {
-        let mut out = format!("\n# Every fault on every case\n\n{}\n", self.summary());
-        out.push_str("| suite | cases | faults that make a check fail |\n|---|---|---|\n");
-        for (suite, (cases, faults)) in self.suites() {
-            let _ = writeln!(out, "| {suite} | {cases} | {faults} |");
+        filled("matrix.md", include_str!("../texts/matrix.md"), self.values())
+    }
+
+    fn values(&self) -> Value {
+        let of = |state: State| self.count(|other| other == state);
+        context! {
+            matrix => Serde(self),
+            suites => Serde(self.suites()),
+            incomplete => self.is_incomplete(),
+            fail => self.count(|state| matches!(state, State::Fail(_))),
+            pass => of(State::Pass),
+            not_applicable => of(State::NotApplicable),
+            ended => of(State::Ended),
+            not_run => of(State::NotRun),
         }
-        out.push_str(
-            "\nA number counts the records that fail; · is a run in which all hold, ! a run that ended without records, ? a cell \
-             that was not run. In an empty cell the case does not execute the code of the fault. Columns are the faults above.\n\n| case |",
-        );
-        out.extend((1..=self.faults.len()).map(|number| format!(" {number} |")));
-        let _ = writeln!(out, "\n|---|{}", "---|".repeat(self.faults.len()));
-        for (case, states) in &self.cases {
-            let _ = write!(out, "| {case} |");
-            for state in states {
-                let _ = match state {
-                    State::Fail(count) => write!(out, " {count} |"),
-                    State::Pass => write!(out, " · |"),
-                    State::Ended => write!(out, " ! |"),
-                    State::NotApplicable => write!(out, " |"),
-                    State::NotRun => write!(out, " ? |"),
-                };
-            }
-            out.push('\n');
-        }
-        out.push_str("\n# Checks that pass with every fault\n\n| check | reason |\n|---|---|\n");
-        for Idle { check, reason } in &self.idle {
-            let _ = writeln!(out, "| `{check}` | {} |", reason.unwrap_or("**no reason is given**"));
-        }
-        out
     }
 
     /// Cases of each suite, and faults that turn a check of it red.
@@ -188,53 +149,4 @@ fn check_of(id: &str) -> String {
     let (suite, case) = (parts.next().unwrap_or_default(), parts.next().unwrap_or_default());
     let quantity = parts.next().and_then(|rest| rest.rsplit('/').next()).unwrap_or_default();
     format!("{suite}/{case}/{quantity}")
-}
-
-#[cfg(test)]
-mod tests {
-    use fisura_verification::output::OutputFolder;
-    use fisura_verification::record::Status;
-
-    use super::super::runner::Report;
-    use super::*;
-
-    #[test]
-    fn every_cell_says_whether_it_was_run_and_idle_checks_are_found() {
-        let folder = tempfile::tempdir().unwrap();
-        let cases = ["a/b".to_string(), "a/c".to_string(), "a/d".to_string()];
-        let keys = cases.iter().map(|case| (case.clone(), "key".to_string())).collect();
-        let folder = OutputFolder::open(&folder.path().join("out"), "faults").unwrap();
-        let store = Store::open(&folder, &keys).unwrap();
-        let faults: Vec<&'static Fault> = all().iter().collect();
-        let report = |case: &str, status| {
-            let records = vec![(format!("{case}/h=1/2/error"), status), (format!("{case}/drift"), Status::Pass)];
-            Ok(Report {
-                case: case.into(),
-                seconds: 1.0,
-                records,
-                passed: vec![all()[0].id.clone(), all()[1].id.clone()],
-            })
-        };
-        for case in ["a/b", "a/c"] {
-            store.put(None, case, report(case, Status::Pass)).unwrap();
-            store.put(Some(&all()[0].id), case, report(case, Status::Fail)).unwrap();
-        }
-        store.put(Some(&all()[1].id), "a/b", report("a/b", Status::Pass)).unwrap();
-        let matrix = Matrix::new(&faults, &cases, &store);
-        let row = |case: usize| &matrix.cases[case].1[..3];
-        assert_eq!(row(0), [State::Fail(1), State::Pass, State::NotApplicable]);
-        assert_eq!(row(1), [State::Fail(1), State::NotRun, State::NotApplicable]);
-        assert_eq!(row(2), [State::NotRun; 3]);
-        assert_eq!(matrix.idle, [Idle { check: "a/b/drift".into(), reason: None }], "a/c is not finished");
-        assert!(matrix.lacking() && matrix.text().contains("no reason is given: a/b/drift"));
-        assert!(matrix.markdown().contains("| a/b | 1 | · | |"));
-
-        let lacking = |faults: &[&'static Fault], cases: &[String]| {
-            let matrix = Matrix { idle: Vec::new(), ..Matrix::new(faults, cases, &store) };
-            (matrix.lacking(), matrix.text().contains("not complete"))
-        };
-        assert_eq!(lacking(&faults, &cases), (true, true));
-        assert_eq!(lacking(&faults, &cases[..1]), (false, false));
-        assert_eq!(lacking(&faults[..2], &cases), (false, false), "of some faults nothing more is known");
-    }
 }

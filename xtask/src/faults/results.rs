@@ -1,8 +1,8 @@
 //! What catches each fault, and the files that say so.
 
-use std::fmt::Write;
-
+use fisura_reports::template::filled;
 use fisura_verification::output::{OutputError, OutputFolder};
+use minijinja::value::Serde;
 use serde::Serialize;
 
 use super::cells::Store;
@@ -82,85 +82,11 @@ impl Results {
 
     /// One line per fault.
     pub fn text(&self) -> String {
-        let width = self.faults.iter().map(|caught| caught.fault.id.len()).max().unwrap_or(0);
-        let mut out = String::new();
-        for Caught { fault, caught_by, checks, ended } in &self.faults {
-            let verdict = match caught_by.first() {
-                Some(first) => format!("caught    {:>3} of {checks:>3} checks: {first}", caught_by.len()),
-                None => format!("SURVIVES    0 of {checks:>3} checks: {}", fault.cases.join(", ")),
-            };
-            let _ = writeln!(out, "{:width$}  {verdict}", fault.id);
-            for ending in ended {
-                let _ = writeln!(out, "{:width$}  ended without records: {ending}", "");
-            }
-        }
-        for case in &self.unsound {
-            let _ = writeln!(out, "{case} does not hold without a fault: see `cargo xtask verify --case {case}`");
-        }
-        let (all, survivors) = (self.faults.len(), self.survivors().count());
-        let _ = writeln!(out, "{} of {all} faults are caught", all - survivors);
-        out
+        filled("faults.txt", include_str!("../texts/faults.txt"), Serde(self))
     }
 
     /// The table of faults and checks.
     fn markdown(&self) -> String {
-        let mut out = String::from(
-            "# Planted errors and the checks that catch them\n\n| | fault | what is wrong | named cases | failing checks |\n|---|---|---|---|---|\n",
-        );
-        for (number, Caught { fault, caught_by, checks, .. }) in self.faults.iter().enumerate() {
-            let red = match caught_by.as_slice() {
-                [] => format!("**none** of {checks}"),
-                all => {
-                    let shown: Vec<String> = all.iter().take(2).map(|id| format!("`{id}`")).collect();
-                    let more = if all.len() > 2 { ", …" } else { "" };
-                    format!("{} of {checks}: {}{more}", all.len(), shown.join(", "))
-                }
-            };
-            let cases = fault.cases.join(", ");
-            let _ = writeln!(out, "| {} | {} | {} | {cases} | {red} |", number + 1, fault.id, fault.what);
-        }
-        for case in &self.unsound {
-            let _ = writeln!(out, "\n**{case} does not hold without a fault.**");
-        }
-        out
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::collections::BTreeMap;
-
-    use fisura_verification::record::Status;
-
-    use super::super::runner::Report;
-    use super::*;
-
-    fn report(statuses: &[Status]) -> Report {
-        let records = statuses.iter().enumerate().map(|(i, status)| (format!("a/b/{i}"), *status)).collect();
-        Report { case: "a/b".into(), seconds: 1.0, records, passed: vec!["sign".into(), "root".into()] }
-    }
-
-    #[test]
-    fn a_fault_is_caught_by_what_turns_red_and_survives_what_ends_without_records() {
-        let folder = tempfile::tempdir().unwrap();
-        let folder = OutputFolder::open(&folder.path().join("out"), "faults").unwrap();
-        let store = Store::open(&folder, &BTreeMap::from([("a/b".into(), "key".into())])).unwrap();
-        let cases = ["a/b".to_string()];
-        let fault = |id: &str| -> &'static Fault {
-            Box::leak(Box::new(Fault { id: id.into(), what: format!("a {id}"), cases: vec!["a/b".into()] }))
-        };
-        let [sign, root] = ["sign", "root"].map(fault);
-        store.put(None, "a/b", Ok(report(&[Status::Pass, Status::Info, Status::Pass]))).unwrap();
-        store.put(Some("sign"), "a/b", Ok(report(&[Status::Pass, Status::Info, Status::Error]))).unwrap();
-        store.put(Some("root"), "a/b", Err("exit status: 101".into())).unwrap();
-        let results = Results::new(&[sign, root], &cases, &store, false);
-        assert_eq!((results.faults[0].caught_by.as_slice(), results.faults[0].checks), (&["a/b/2".to_string()][..], 2));
-        assert!(results.lacking() && results.text().contains("1 of 2 faults are caught"));
-        assert!(results.text().contains("ended without records: a/b: exit status: 101"));
-        assert!(results.markdown().contains("| 2 | root | a root | a/b | **none** of 2 |"));
-        assert!(!Results::new(&[sign], &cases, &store, true).lacking());
-        store.put(None, "a/b", Ok(report(&[Status::Fail]))).unwrap();
-        let unsound = Results::new(&[sign], &cases, &store, true);
-        assert!(unsound.lacking() && unsound.text().contains("a/b does not hold without a fault"));
+        filled("faults.md", include_str!("../texts/faults.md"), Serde(self))
     }
 }

@@ -16,7 +16,7 @@ use super::PLANTED;
 use crate::failure::Failure;
 
 /// What a process says of a case it has run, on a line of its standard output.
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Debug, Default, Serialize, Deserialize)]
 pub struct Report {
     /// Id of the case.
     pub case: String,
@@ -38,8 +38,6 @@ pub struct Job {
     pub fault: Option<&'static str>,
     /// Id of each case, and the time it may take.
     pub cases: Vec<(String, Duration)>,
-    /// Values of the scenes to be changed, `key.path=value`.
-    pub set: &'static [&'static str],
 }
 
 /// Told what became of a case, and in which folder its series are until this returns.
@@ -106,7 +104,6 @@ impl Runner {
         let mut command = Command::new(&self.program);
         command.arg("planted").args(cases.iter().map(|(case, _)| case)).args(["--threads", "1", "--quiet", "--out"]);
         command.arg(out.path()).env_remove(PLANTED);
-        command.args(job.set.iter().flat_map(|set| ["--set", set]));
         command.envs(job.fault.map(|fault| (PLANTED, fault)));
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(complaints.try_clone().map_err(unstarted)?);
         let mut process = Process(command.spawn().map_err(unstarted)?);

@@ -16,14 +16,15 @@ fn place() -> Place {
     place
 }
 
-fn submission(name: &str) -> String {
-    root().join("reference-data/submissions").join(name).display().to_string()
+/// Judges a result that passes.
+fn judge_sound() -> String {
+    format!("judge --out out {}", root().join("reference-data/submissions/fisura-p2-h2").display())
 }
 
 #[test]
 fn a_sound_result_passes_and_leaves_page_verdict_and_export() {
     let place = place();
-    let outcome = place.xtask(&["judge", &submission("fisura-p2-h2"), "--out", "out"]).with_status(0);
+    let outcome = place.succeeds(&judge_sound());
     assert!(
         outcome.out.starts_with("PASS ")
             && outcome.out.ends_with("1 judged: 1 pass, 0 fail, 0 incomplete, 0 diagnostic\n")
@@ -31,22 +32,21 @@ fn a_sound_result_passes_and_leaves_page_verdict_and_export() {
     assert_eq!(place.files("out"), ["judge.html", "verdict.json"]);
     let page = place.read("out/judge.html");
     assert!(page.contains("<svg") && !page.contains("<script") && !page.contains("src=\"http"));
-    let json = place.xtask(&["judge", &submission("fisura-p2-h2"), "--format", "json", "--out", "out"]).with_status(0);
-    assert_eq!(json.json(), serde_json::from_str::<serde_json::Value>(&place.read("out/verdict.json")).unwrap());
+    let json = place.succeeds(&format!("{} --format json", judge_sound()));
+    assert_eq!(json.json(), place.json("out/verdict.json"));
     assert_eq!(json.json()["schema"], "fisura.verdict/1");
 }
 
 #[test]
 fn the_references_are_found_from_any_folder() {
-    let sound = submission("fisura-p2-h2");
     // above the program
     let mut place = Place::new();
-    place.xtask(&["judge", &sound, "--out", "out"]).with_status(0);
+    place.succeeds(&judge_sound());
     // a project of somebody else that cargo runs, with a folder of the same name
     place.write("theirs/Cargo.toml", "[package]\n");
     place.write("reference-data/theirs/curve.csv", "x,y\n0,1\n");
     place.manifest = Some(place.path("theirs"));
-    place.xtask_in(&place.path("theirs"), &["judge", &sound, "--out", "out"]).with_status(0);
+    place.xtask_in("theirs", &judge_sound()).with_status(0);
 }
 
 #[test]
@@ -59,11 +59,7 @@ fn the_references_are_those_of_the_current_workspace_or_missed_with_all_places()
     // by another process: a file that this one has open for writing cannot be started meanwhile
     let copied = Command::new("cp").arg(env!("CARGO_BIN_EXE_xtask")).arg(&program).status().unwrap();
     assert!(copied.success());
-    let sound = submission("fisura-p2-h2");
-    let judge = |place: &Place| {
-        let folder = place.path("elsewhere/deep/er");
-        place.start(&program, &folder, &["judge", &sound, "--out", "out"])
-    };
+    let judge = |place: &Place| place.start(&program, "elsewhere/deep/er", &judge_sound());
     let places = ["elsewhere/deep/er and above, the current folder", "bin and above, the program", "cargo xtask"];
     judge(&place).with_status(2).complains_of(&places);
     place.manifest = Some(place.path("package"));
@@ -75,27 +71,23 @@ fn the_references_are_those_of_the_current_workspace_or_missed_with_all_places()
 #[test]
 fn several_folders_are_judged_at_once_and_one_that_fails_ends_with_1() {
     let place = place();
-    let wrong = root().join("verification/tests/judge/length-scale").display().to_string();
-    let outcome = place.xtask(&["judge", &submission("fisura-p2-h2"), &wrong, "--out", "out"]).with_status(1);
-    assert!(outcome.out.contains("FOUND length-scale-convention") && outcome.out.contains("2 judged: 1 pass, 1 fail"));
+    let wrong = root().join("verification/tests/judge/length-scale");
+    let outcome = place.xtask(&format!("{} {}", judge_sound(), wrong.display())).with_status(1);
+    outcome.says(&["FOUND length-scale-convention", "2 judged: 1 pass, 1 fail"]);
 }
 
 #[test]
 fn the_template_is_taken_and_what_is_missing_is_named() {
     let place = place();
-    let template = place.xtask(&["judge", "--new", "plate"]).with_status(0).out;
+    let template = place.succeeds("judge --new plate").out;
     place.write("mine/submission.toml", &template);
-    place.xtask(&["judge", "mine", "--out", "out"]).with_status(2).complains_of(&[
-        "submission.toml:",
-        "history.csv",
-        "cannot be read",
-    ]);
-    place.xtask(&["judge"]).with_status(2).complains_of(&["FOLDER"]);
-    place.xtask(&["judge", "nowhere", "--out", "out"]).with_status(2).complains_of(&["judge --new plate"]);
-    place.xtask(&["judge", "--new", "plates"]).with_status(2).complains_of(&["plates", "plane-waves"]);
+    place.refuses("judge mine --out out", &["submission.toml:", "history.csv", "cannot be read"]);
+    place.refuses("judge", &["FOLDER"]);
+    place.refuses("judge nowhere --out out", &["judge --new plate"]);
+    place.refuses("judge --new plates", &["plates", "plane-waves"]);
     let line = template.replace("plane    =", "plan     =");
     place.write("mine/submission.toml", &line);
-    place.xtask(&["judge", "mine", "--out", "out"]).with_status(2).complains_of(&["did you mean \"plane\"?"]);
+    place.refuses("judge mine --out out", &["did you mean \"plane\"?"]);
 }
 
 #[test]
@@ -103,7 +95,7 @@ fn markup_in_names_stays_text() {
     let place = place();
     let text = "benchmark = \"crack-speed\"\n[code]\nname = \"<script>alert(1)</script>\\u001b[2J\"\n[values]\nlargest_speed = 900\n";
     place.write("mine/submission.toml", text);
-    let outcome = place.xtask(&["judge", "mine", "--out", "out"]).with_status(0);
+    let outcome = place.succeeds("judge mine --out out");
     assert!(!outcome.out.contains('\u{1b}'));
     let page = place.read("out/judge.html");
     assert!(!page.contains("<script") && page.contains("&lt;script&gt;"), "{page}");
@@ -112,12 +104,8 @@ fn markup_in_names_stays_text() {
 #[test]
 fn the_board_says_what_the_numbers_say() {
     let place = place();
-    let outcome = place.xtask(&["judge", "--board", "--out", "out"]).with_status(0);
-    assert!(outcome.out.contains("kinetic energy: error against spacing\n  Of "), "{outcome:?}");
-    assert!(
-        outcome.out.contains("Costs are not shown: ") && outcome.out.contains("The references differ"),
-        "{outcome:?}"
-    );
+    let parts = ["kinetic energy: error against spacing\n  Of ", "Costs are not shown: ", "The references differ"];
+    place.succeeds("judge --board --out out").says(&parts);
     assert_eq!(
         place.files("out"),
         ["board-elastic.svg", "board-fracture.svg", "board-kinetic.svg", "board.html", "board.md", "verdict.json"]

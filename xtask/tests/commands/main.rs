@@ -16,3 +16,5 @@ mod templates;
 mod tutorial;
 mod verify;
 mod vtk;
+#[path = "../../../reports/tests/integration/vtu.rs"]
+mod vtu;

@@ -37,25 +37,24 @@ fn mine_are_there(place: &Place, folder: &str, files: &[&str]) {
 fn every_command_refuses_a_folder_of_the_user() {
     let place = merge::workspace();
     place.write("scene.toml", BLOCK);
-    place.xtask(&["verify", "--case", "energy/*", "--out", "results"]).with_status(0);
-    place.xtask(&["verify", "--case", "energy/*", "--partition", "slice:1/1", "--out", "part"]).with_status(0);
+    place.succeeds("verify --case energy/* --out results");
+    place.succeeds("verify --case energy/* --partition slice:1/1 --out part");
     write_mine(&place, "mine", &FILES);
     place.write("mine/results.json", MINE);
     place.write("mine/summary.json", MINE);
     let before = place.files("mine");
-    let commands: [&[&str]; 8] = [
-        &["run", "scene.toml"],
-        &["verify"],
-        &["merge", "part"],
-        &["compare", "results", "results"],
-        &["figures", "--from", "results"],
-        &["report", "results"],
-        &["bench", "--quick"],
-        &["faults"],
-    ];
-    for command in commands {
-        let outcome = place.xtask(&[command, &["--out", "mine"]].concat()).with_status(2);
-        outcome.complains_of(&["mine is not empty and has no fisura.sha256", "--out"]);
+    for command in [
+        "run scene.toml",
+        "verify",
+        "merge part",
+        "compare results results",
+        "figures --from results",
+        "report results",
+        "bench --quick",
+        "faults",
+    ] {
+        let command = format!("{command} --out mine");
+        place.refuses(&command, &["mine is not empty and has no fisura.sha256", "--out"]);
         mine_are_there(&place, "mine", &FILES);
         assert_eq!(place.files("mine"), before, "{command:?}");
     }
@@ -65,20 +64,17 @@ fn every_command_refuses_a_folder_of_the_user() {
 fn files_of_the_user_stay_beside_those_of_a_command() {
     let place = merge::workspace();
     place.write("scene.toml", BLOCK);
-    let commands: [&[&str]; 2] = [&["run", "scene.toml"], &["verify", "--case", "energy/*"]];
-    for (command, folder) in commands.into_iter().zip(["run", "verify"]) {
-        let command = [command, &["--out", folder]].concat();
-        place.xtask(&command).with_status(0);
+    for (command, folder) in [("run scene.toml --out run", "run"), ("verify --case energy/* --out verify", "verify")] {
+        place.succeeds(command);
         write_mine(&place, folder, &FILES[..if folder == "run" { 4 } else { FILES.len() }]);
         place.write(&format!("{folder}/stress-strain.svg"), MINE);
         let before = place.files(folder);
-        place.xtask(&command).with_status(0);
+        place.succeeds(command);
         assert_eq!(place.files(folder), before);
         mine_are_there(&place, folder, &FILES[..4]);
         place.write(&format!("{folder}/summary.md"), "changed");
     }
-    let refused = place.xtask(&["verify", "--case", "energy/*", "--out", "verify"]).with_status(2);
-    refused.complains_of(&["changed after they were written: summary.md", "--out"]);
+    place.refuses("verify --case energy/* --out verify", &["changed after they were written: summary.md", "--out"]);
     assert_eq!(place.read("verify/summary.md"), "changed");
 }
 
@@ -87,33 +83,34 @@ fn files_of_the_user_stay_beside_those_of_a_command() {
 fn nothing_is_written_through_a_link() {
     let place = Place::with("scene.toml", BLOCK);
     place.write("mine/f", MINE);
-    place.xtask(&["run", "scene.toml", "--out", "out"]).with_status(0);
+    place.succeeds("run scene.toml --out out");
     let link = |name: &str| std::os::unix::fs::symlink(place.path("mine/f"), place.path("out").join(name)).unwrap();
     let names = [".fisura-writable.part", "history.csv.part", "summary.json.part", "checkpoint.bin.part"];
     names.into_iter().for_each(link);
-    place.xtask(&["run", "scene.toml", "--out", "out"]).with_status(0);
+    place.succeeds("run scene.toml --out out");
     mine_are_there(&place, "mine", &["f"]);
     fs::remove_file(place.path("out/history.csv")).unwrap();
     link("history.csv");
-    let refused = place.xtask(&["run", "scene.toml", "--out", "out"]).with_status(2);
-    refused.complains_of(&["changed after they were written: history.csv"]);
+    place.refuses("run scene.toml --out out", &["changed after they were written: history.csv"]);
     mine_are_there(&place, "mine", &["f"]);
 }
 
 #[cfg(unix)]
 mod signals {
     use std::io::{BufRead, BufReader};
-    use std::process::{Child, Stdio};
+    use std::process::Child;
     use std::thread::sleep;
     use std::time::Duration;
 
-    use super::super::support::notched;
+    use super::super::support::{NOTCHED, end};
     use super::super::verify::{case, case_of, workspace_with};
     use super::*;
 
+    const FULL: &str = "verify --tier full --out out";
+
     /// A case that is done at once, and one that takes minutes.
     fn workspace() -> Place {
-        let endless = notched().replacen("end_time = \"5 us\"", "end_time = \"50000 us\"", 1);
+        let endless = NOTCHED.replacen("end_time = \"5 us\"", "end_time = \"50000 us\"", 1);
         let endless = endless.replacen("cells  = [10, 5]", "cells  = [80, 40]", 1);
         workspace_with(&[
             ("energy/a".to_string(), case("The ledger closes", "quick", 1e-12)),
@@ -123,9 +120,8 @@ mod signals {
 
     /// Starts a command and waits until its standard error has a line with `mark`; what is left of it is read
     /// no more.
-    fn start(place: &Place, arguments: &[&str], mark: &str) -> Child {
-        let mut command = place.command(arguments);
-        let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("the binary starts");
+    fn start(place: &Place, line: &str, mark: &str) -> Child {
+        let mut child = place.begin(line);
         let mut reader = BufReader::new(child.stderr.take().expect("standard error"));
         let mut line = String::new();
         while !line.contains(mark) {
@@ -135,12 +131,6 @@ mod signals {
         child.stderr = Some(reader.into_inner());
         sleep(Duration::from_millis(300)); // it is in the middle of what follows
         child
-    }
-
-    fn end(child: Child, signal: &str) -> Option<i32> {
-        let id = child.id().to_string();
-        assert!(std::process::Command::new("kill").args([signal, &id]).status().expect("kill").success());
-        child.wait_with_output().expect("it ends").status.code()
     }
 
     #[track_caller]
@@ -156,42 +146,38 @@ mod signals {
     #[test]
     fn an_interrupted_verification_keeps_what_is_finished_and_says_that_it_is_not() {
         let place = workspace();
-        let all = ["verify", "--tier", "full", "--out", "out"];
-        place.xtask(&["verify", "--out", "out"]).with_status(0);
+        place.succeeds("verify --out out");
         let verdict = place.read("out/summary.md").lines().next().expect("a verdict").to_string();
         for signal in ["-INT", "-TERM"] {
-            assert_eq!(end(start(&place, &all, "[1/2] energy/a pass"), signal), Some(130));
+            assert_eq!(end(start(&place, FULL, "[1/2] energy/a pass"), signal).0, Some(130));
             is_unfinished(&place, 1);
             assert!(!place.read("out/summary.md").contains(&verdict), "{verdict}");
-            let results: serde_json::Value = serde_json::from_str(&place.read("out/results.json")).unwrap();
-            assert_eq!(results["records"][0]["status"], "pass");
+            assert_eq!(place.json("out/results.json")["records"][0]["status"], "pass");
             assert!(place.path("out/series/energy-a.csv").is_file() && place.files("out/partial").len() == 1);
         }
         // the other tier would remove what is finished
-        let refused = place.xtask(&["verify", "--out", "out"]).with_status(2);
-        refused.complains_of(&["1 finished cases of an interrupted run in partial/", "--out"]);
+        place.refuses("verify --out out", &["1 finished cases of an interrupted run in partial/", "--out"]);
         assert_eq!(place.files("out/partial").len(), 1);
     }
 
     #[test]
     fn a_killed_verification_leaves_no_old_verdict() {
         let place = workspace();
-        place.xtask(&["verify", "--out", "out"]).with_status(0);
-        let child = start(&place, &["verify", "--tier", "full", "--out", "out"], "[1/2] energy/a pass");
+        place.succeeds("verify --out out");
+        let child = start(&place, FULL, "[1/2] energy/a pass");
         let holder = format!("in use by process {}: xtask verify --tier full --out out", child.id());
-        place.xtask(&["verify", "--out", "out"]).with_status(2).complains_of(&[&holder, "wait"]);
-        place.xtask(&["report", "out"]).with_status(2).complains_of(&[&holder]);
-        assert_eq!(end(child, "-KILL"), None);
+        place.refuses("verify --out out", &[&holder, "wait"]);
+        place.refuses("report out", &[&holder]);
+        assert_eq!(end(child, "-KILL").0, None);
         is_unfinished(&place, 0);
-        place.xtask(&["report", "out"]).with_status(0);
+        place.succeeds("report out");
         is_unfinished(&place, 0);
     }
 
     #[test]
     fn a_report_that_cannot_be_written_does_not_hide_what_the_checks_say() {
         let place = workspace();
-        let late = ["verify", "--tier", "full", "--case-timeout", "4", "--out", "out"];
-        let child = start(&place, &late, "[1/2] energy/a pass");
+        let child = start(&place, &format!("{FULL} --case-timeout 4"), "[1/2] energy/a pass");
         fs::remove_file(place.path("out/junit.xml")).expect("a file");
         fs::create_dir_all(place.path("out/junit.xml/in-the-way")).expect("a folder");
         let output = child.wait_with_output().expect("it ends");
@@ -203,8 +189,8 @@ mod signals {
     #[test]
     fn interrupted_benchmarks_keep_what_is_measured_and_say_that_they_are_not_finished() {
         let place = bench::workspace();
-        let arguments = ["bench", "--quick", "--family", "ceilings", "--out", "out"];
-        assert_eq!(end(start(&place, &arguments, "ceilings"), "-INT"), Some(130));
+        let child = start(&place, "bench --quick --family ceilings --out out", "ceilings");
+        assert_eq!(end(child, "-INT").0, Some(130));
         let words = "0 of 1 families are measured: the run is in progress or was stopped";
         for name in ["bench.json", "bench.html", "summary.md"] {
             assert!(place.read(&format!("out/{name}")).contains(words), "{name}");

@@ -13,11 +13,11 @@ fn a_report_is_written_beside_its_results_or_elsewhere() {
     let place = Place::with("results/results.json", RESULTS);
     place.write("results/series/timing/a.csv", "x\n1\n");
     // results of an older version have no list of what was written
-    place.xtask(&["report", "results"]).with_status(2).complains_of(&["results", "no fisura.sha256", "--out"]);
-    let outcome = place.xtask(&["report", "results", "--out", "copy", "--format", "json"]).with_status(0);
+    place.refuses("report results", &["results", "no fisura.sha256", "--out"]);
+    let outcome = place.succeeds("report results --out copy --format json");
     assert!(outcome.json()["files"].as_array().unwrap().contains(&"copy/report.html".into()));
     let first = place.read("copy/report.html");
-    let outcome = place.xtask(&["report", "copy"]).with_status(0);
+    let outcome = place.succeeds("report copy");
     assert!(outcome.out.lines().any(|line| line == "copy/report.html"), "{outcome:?}");
     assert_eq!(place.read("copy/report.html"), first);
     assert_eq!(place.files("results"), ["results.json", "series"], "nothing was written there");
@@ -30,7 +30,7 @@ fn a_folder_below_that_of_the_results_is_no_part_of_them() {
     place.write("results/series/a.csv", "x\n1\n");
     for out in ["results/series/copy", "results/copy"] {
         for _ in 0..2 {
-            place.xtask(&["report", "results", "--out", out]).with_status(0);
+            place.succeeds(&format!("report results --out {out}"));
         }
         assert_eq!(place.read(&format!("{out}/series/a.csv")), "x\n1\n");
     }
@@ -44,11 +44,7 @@ fn links_and_pipes_are_not_copied() {
     place.write("secret.csv", "x\n1\n");
     place.write("results/series/a.csv", "x\n1\n");
     let refused = |name: &str| {
-        place.xtask(&["report", "results", "--out", "copy"]).with_status(2).complains_of(&[
-            name,
-            "regular files",
-            "help:",
-        ]);
+        place.refuses("report results --out copy", &[name, "regular files", "help:"]);
         assert!(!place.path("copy/series").exists(), "nothing is copied");
         std::fs::remove_file(place.path("results").join(name)).unwrap();
     };
@@ -57,7 +53,7 @@ fn links_and_pipes_are_not_copied() {
     let pipe = std::process::Command::new("mkfifo").arg(place.path("results/series/c.csv")).status().unwrap();
     assert!(pipe.success());
     refused("series/c.csv");
-    place.xtask(&["report", "results", "--out", "copy"]).with_status(0);
+    place.succeeds("report results --out copy");
 }
 
 #[test]
@@ -66,11 +62,11 @@ fn texts_of_results_do_not_steer_the_terminal() {
     let place =
         Place::with("results/results.json", &RESULTS.replace("\"cpu\": \"\"", &format!("\"cpu\": \"{steering}\"")));
     for format in ["text", "json"] {
-        let outcome = place.xtask(&["report", "results", "--out", format, "--format", format]).with_status(0);
+        let outcome = place.succeeds(&format!("report results --out {format} --format {format}"));
         assert!(!(outcome.out + &outcome.err).contains(['\u{1b}', '\u{7}', '\u{9b}']));
     }
     place.write("foreign/results.json", &RESULTS.replace("fisura.results/1", steering));
-    let outcome = place.xtask(&["report", "foreign"]).with_status(2).complains_of(&["]0;owned", "fisura.results/1"]);
+    let outcome = place.refuses("report foreign", &["]0;owned", "fisura.results/1"]);
     assert!(!outcome.err.contains(['\u{1b}', '\u{7}', '\u{9b}']), "{outcome:?}");
 }
 
@@ -78,13 +74,10 @@ fn texts_of_results_do_not_steer_the_terminal() {
 fn missing_or_foreign_results_end_with_2() {
     let place = Place::with("foreign/results.json", "{\"schema\": \"other/7\"}");
     place.write("broken/results.json", "{\"schema\": \"fisura.results/1\", \"records\": 3}");
-    place.xtask(&["report", "absent"]).with_status(2).complains_of(&["absent/results.json", "verify"]);
-    place.xtask(&["report", "foreign"]).with_status(2).complains_of(&["other/7", "fisura.results/1"]);
+    place.refuses("report absent", &["absent/results.json", "verify"]);
+    place.refuses("report foreign", &["other/7", "fisura.results/1"]);
     place.write("both/results.json", RESULTS);
     place.write("both/bench.json", "{}");
-    place
-        .xtask(&["report", "both"])
-        .with_status(2)
-        .complains_of(&["results.json and bench.json", "a folder of its own"]);
-    place.xtask(&["report", "broken"]).with_status(2).complains_of(&["broken/results.json", "line 1"]);
+    place.refuses("report both", &["results.json and bench.json", "a folder of its own"]);
+    place.refuses("report broken", &["broken/results.json", "line 1"]);
 }

@@ -1,15 +1,13 @@
 //! `run`: files, statuses, breakdowns, the same bytes for any number of threads.
 
-use std::process::Stdio;
-use std::thread::sleep;
-use std::time::{Duration, Instant};
+use std::path::Path;
 
-use super::support::{BLOCK, Place, notched};
+use super::support::{BLOCK, NOTCHED, Place, wait_until};
 
 #[test]
 fn an_elastic_scene_has_nothing_of_fracture() {
     let place = Place::with("block.toml", BLOCK);
-    let run = place.xtask(&["run", "block.toml", "--out", "out", "--format", "json"]).with_status(0);
+    let run = place.succeeds("run block.toml --out out --format json");
     assert_eq!(run.err, "", "no warnings, and no progress bar off a terminal");
     assert_eq!(run.json()["models"], serde_json::json!(["momentum"]));
     assert_eq!(run.out, place.read("out/summary.json"));
@@ -31,11 +29,9 @@ fn titles_and_names_do_not_steer_the_terminal() {
     let place = Place::with("block.toml", &scene);
     let wrong = scene.replace("[analysis]", &format!("[analysis]\n\"{steering}\" = \"{steering}\""));
     place.write("wrong.toml", &wrong);
-    for (arguments, status) in [(["run", "block.toml"], 0), (["check", "block.toml"], 0), (["check", "wrong.toml"], 2)]
-    {
+    for (command, status) in [("run block.toml", 0), ("check block.toml", 0), ("check wrong.toml", 2)] {
         for format in ["text", "json"] {
-            let arguments = [&arguments[..], &["--format", format]].concat();
-            let outcome = place.xtask(&arguments).with_status(status);
+            let outcome = place.xtask(&format!("{command} --format {format}")).with_status(status);
             let shown = outcome.out.clone() + &outcome.err;
             assert!(!shown.contains(['\u{1b}', '\u{7}', '\u{9b}']), "{outcome:?}");
             assert!(shown.contains("]0;owned"), "{outcome:?}");
@@ -46,11 +42,10 @@ fn titles_and_names_do_not_steer_the_terminal() {
 
 #[test]
 fn a_fracture_scene_gives_the_same_bytes_for_one_and_two_threads() {
-    let place = Place::with("notched.toml", &notched());
+    let place = Place::with("notched.toml", NOTCHED);
     for threads in ["1", "2"] {
-        let arguments = ["run", "notched.toml", "--threads", threads, "--out", threads, "--set"];
-        let run = place.xtask(&[&arguments[..], &["mesh.cells=[80, 40]"]].concat()).with_status(0);
-        assert!(run.out.contains("momentum, phase field"), "{run:?}");
+        let run = format!("run notched.toml --threads {threads} --out {threads} --set mesh.cells=[80,40]");
+        place.succeeds(&run).says(&["momentum, phase field"]);
     }
     let history = place.read("1/history.csv");
     assert_eq!(history, place.read("2/history.csv"));
@@ -68,76 +63,64 @@ fn a_fracture_scene_gives_the_same_bytes_for_one_and_two_threads() {
 #[test]
 fn a_step_above_the_critical_one_ends_with_3_and_keeps_the_history() {
     let place = Place::with("block.toml", BLOCK);
-    let critical =
-        place.xtask(&["check", "block.toml", "--format", "json"]).json()["critical_step_s"].as_f64().unwrap();
-    let step = format!("analysis.time_step={:e}", 1.2 * critical);
-    let end = format!("analysis.end_time={:e}", 240.0 * critical);
-    let arguments = ["run", "block.toml", "--out", "out", "--set", &step, "--set", &end, "--set", "output.frames=[0]"];
-    let run = place.xtask(&[&arguments[..], &["--set", "output.samples=100"]].concat()).with_status(3);
+    let critical = place.xtask("check block.toml --format json").json()["critical_step_s"].as_f64().unwrap();
+    let times = format!("analysis.time_step={:e} --set analysis.end_time={:e}", 1.2 * critical, 240.0 * critical);
+    let output = "--set output.frames=[0] --set output.samples=100";
+    let run = place.xtask(&format!("run block.toml --out out --set {times} {output}")).with_status(3);
     let run = run.complains_of(&["at step", "t = ", "near point ", "likely cause", "1.200 times the critical step"]);
-    assert!(run.out.contains("Block"), "the summary is printed: {run:?}");
+    run.says(&["Block"]);
     let rows = place.read("out/history.csv").lines().count() - 1;
     assert!((2..101).contains(&rows), "{rows} rows");
     assert!(!place.read("out/history.csv").contains("nan"));
-    let summary: serde_json::Value = serde_json::from_str(&place.read("out/summary.json")).unwrap();
+    let (summary, report) = (place.json("out/summary.json"), place.json("out/breakdown.json"));
     assert!(summary["breakdown"]["step"].as_u64().unwrap() > 1);
     assert!(place.path("out/stress-0s.svg").is_file());
-    let report: serde_json::Value = serde_json::from_str(&place.read("out/breakdown.json")).unwrap();
     assert_eq!(report["step"], summary["breakdown"]["step"]);
     assert_eq!((&report["points"], &report["points_not_finite"]), (&200.into(), &0.into()));
     assert_eq!(report["worst_points"][0]["position_m"], summary["breakdown"]["place_m"]);
     assert!(report["extremes"]["largest_strain"].as_f64().unwrap() > 0.0 && report["row"]["elastic_j"].is_f64());
 
-    place.xtask(&["run", "block.toml", "--out", "out"]).with_status(0);
+    place.succeeds("run block.toml --out out");
     assert!(!place.path("out/breakdown.json").exists(), "the breakdown of the run before is gone");
 }
 
 #[test]
 fn set_changes_the_scene_and_pictures_of_the_run_before_go() {
     let place = Place::with("block.toml", BLOCK);
-    place.xtask(&["run", "block.toml", "--out", "out"]).with_status(0);
-    let arguments = ["run", "block.toml", "--out", "out", "--set", "output.samples=4", "--set", "output.frames=[]"];
+    place.succeeds("run block.toml --out out");
     place.write("out/phase-notes.txt", "mine");
-    let run = place.xtask(&[&arguments[..], &["--set", "mesh.degree=3"]].concat()).with_status(0);
+    let sets = "--set output.samples=4 --set output.frames=[] --set mesh.degree=3";
+    let run = place.succeeds(&format!("run block.toml --out out {sets}"));
     assert!(run.out.contains("particles") && run.err.is_empty(), "{run:?}");
     assert_eq!(place.read("out/history.csv").lines().count(), 1 + 5);
     assert_eq!(place.files("out"), ["energies.svg", "history.csv", "phase-notes.txt", "summary.json"]);
 }
 
+/// Files go to the target folder of the workspace, or of the current folder.
 #[test]
-fn files_go_to_the_target_folder_of_the_workspace_or_of_the_current_folder() {
-    let mut place = Place::with("scenes/block.toml", BLOCK);
-    place.xtask(&["run", "scenes/block.toml", "--quiet"]).with_status(0);
-    assert!(place.path("target/fisura/run/history.csv").is_file());
-
-    place.write("workspace/Cargo.toml", "[workspace]\n");
-    place.manifest = Some(place.path("workspace/xtask"));
-    place.xtask_in(&place.path("scenes"), &["run", "block.toml"]).with_status(0);
-    assert!(place.path("workspace/target/fisura/run/history.csv").is_file());
-}
-
-#[test]
-fn a_scene_is_found_from_any_folder_of_the_workspace() {
+fn a_scene_is_found_and_files_are_written_from_any_folder_of_the_workspace() {
     let mut place = Place::with("workspace/scenes/block.toml", BLOCK);
+    place.succeeds("run workspace/scenes/block.toml --quiet");
+    assert!(place.path("target/fisura/run/history.csv").is_file());
     place.write("workspace/Cargo.toml", "[workspace]\n");
     place.write("workspace/solver/src/lib.rs", "");
     place.manifest = Some(place.path("workspace/xtask"));
-    let below = place.path("workspace/solver/src");
-    let out = place.path("out").display().to_string();
-    for arguments in [vec!["check", "scenes/block.toml"], vec!["run", "scenes/block.toml", "--out", &out]] {
-        place.xtask_in(&below, &arguments).with_status(0);
+    let below = "workspace/solver/src";
+    for command in ["check", "run"] {
+        place.xtask_in(below, &format!("{command} scenes/block.toml")).with_status(0);
     }
+    assert!(place.path("workspace/target/fisura/run/history.csv").is_file());
     let nearer = BLOCK.replace("Block", "Nearer");
     place.write("workspace/solver/src/scenes/block.toml", &nearer);
-    assert!(place.xtask_in(&below, &["check", "scenes/block.toml"]).with_status(0).out.contains("Nearer"));
+    place.xtask_in(below, "check scenes/block.toml").with_status(0).says(&["Nearer"]);
     for command in ["check", "run"] {
-        let absent = place.xtask_in(&below, &[command, "scenes/absent.toml"]).with_status(2);
+        let absent = place.xtask_in(below, &format!("{command} scenes/absent.toml")).with_status(2);
         let absent =
             absent.complains_of(&["there is no scenes/absent.toml", "workspace/solver/src and ", "workspace\n"]);
         assert_eq!(absent.out, "");
     }
     place.manifest = None;
-    let absent = place.xtask_in(&below, &["check", "absent.toml"]).with_status(2);
+    let absent = place.xtask_in(below, "check absent.toml").with_status(2);
     assert!(absent.err.contains("solver/src\n"), "one place: {absent:?}");
 }
 
@@ -145,16 +128,11 @@ fn a_scene_is_found_from_any_folder_of_the_workspace() {
 #[test]
 fn the_history_can_be_followed() {
     let place = Place::with("block.toml", BLOCK);
-    let long = ["--set", "analysis.end_time=\"5 ms\"", "--set", "output.samples=5000", "--set", "output.frames=[]"];
+    let long = "--set 'analysis.end_time=5 ms' --set output.samples=5000 --set output.frames=[]";
     for checkpoint in ["none", "60"] {
-        let arguments = ["run", "block.toml", "--out", "out", "--checkpoint", checkpoint];
-        let mut command = place.command(&[&arguments[..], &long].concat());
-        let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        let mut child = place.begin(&format!("run block.toml --out out --checkpoint {checkpoint} {long}"));
         let rows = || std::fs::read_to_string(place.path("out/history.csv")).unwrap_or_default();
-        let clock = Instant::now();
-        while rows().lines().count() < 12 && clock.elapsed() < Duration::from_secs(60) {
-            sleep(Duration::from_millis(2));
-        }
+        wait_until(|| rows().lines().count() >= 12);
         let ended = child.try_wait().unwrap();
         child.kill().unwrap();
         child.wait().unwrap();
@@ -164,7 +142,7 @@ fn the_history_can_be_followed() {
         assert!(whole.starts_with("time_s,") && whole.lines().count() >= 12, "{whole}");
         assert!(whole.lines().all(|line| line.matches(',').count() == 9), "{whole}");
     }
-    place.xtask(&["run", "block.toml", "--out", "out"]).with_status(0);
+    place.succeeds("run block.toml --out out");
     assert_eq!(place.read("out/history.csv").lines().count(), 1 + 11, "the part of a run is replaced");
 }
 
@@ -172,8 +150,8 @@ fn the_history_can_be_followed() {
 fn an_output_folder_that_cannot_be_written_is_refused_before_the_run() {
     let place = Place::with("block.toml", BLOCK);
     place.write("file", "not a folder");
-    let run = place.xtask(&["run", "block.toml", "--out", "file/out"]).with_status(2);
-    assert_eq!(run.complains_of(&["output folder file/out cannot be written", "--out"]).out, "");
+    let parts = ["output folder file/out cannot be written", "--out"];
+    assert_eq!(place.refuses("run block.toml --out file/out", &parts).out, "");
 }
 
 /// Files beyond a limit cannot be written, as on a full disk.
@@ -181,23 +159,17 @@ fn an_output_folder_that_cannot_be_written_is_refused_before_the_run() {
 #[test]
 fn a_full_disk_ends_with_2_and_leaves_nothing_that_looks_finished() {
     let place = Place::with("block.toml", BLOCK);
-    let script = format!("trap '' XFSZ; ulimit -f 1; exec {} run block.toml --out out", env!("CARGO_BIN_EXE_xtask"));
-    let mut command = std::process::Command::new("sh");
-    command.args(["-c", &script]).current_dir(place.path("")).env_remove("CARGO_MANIFEST_DIR");
-    let output = command.output().unwrap();
-    let err = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{err}");
-    assert!(err.contains("out/") && err.contains("cannot be written") && err.contains("--out"), "{err}");
+    let run = format!("exec {} run block.toml --out out", env!("CARGO_BIN_EXE_xtask"));
+    let run = place.start(Path::new("sh"), "", &format!("-c \"trap '' XFSZ; ulimit -f 1; {run}\""));
+    run.with_status(2).complains_of(&["out/", "cannot be written", "--out"]);
     assert!(place.files("out").iter().all(|name| !name.ends_with(".part")), "{:?}", place.files("out"));
     assert!(!place.path("out/energies.svg").exists());
 }
 
 #[test]
 fn the_demonstration_draws_energies_and_says_what_comes_next() {
-    let place = Place::with("verification/scenes/plate.toml", &notched());
-    let demo = place.xtask(&["demo", "--out", "out"]).with_status(0);
-    for part in ["e elastic", "│", "coarse", "cargo xtask verify --suite plate", "phase-80us.svg"] {
-        assert!(demo.out.contains(part), "{part} is missing: {demo:?}");
-    }
+    let place = Place::with("verification/scenes/plate.toml", NOTCHED);
+    let demo = place.succeeds("demo --out out");
+    demo.says(&["e elastic", "│", "coarse", "cargo xtask verify --suite plate", "phase-80us.svg"]);
     assert!(place.files("out").contains(&"history.csv".to_string()));
 }

@@ -2,50 +2,18 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Child, Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
 use serde_json::Value;
 use tempfile::TempDir;
 
 /// An elastic block pulled upwards: 200 particles.
-pub const BLOCK: &str = r#"title = "Block"
-
-[mesh]
-degree = 2
-origin = ["0 mm", "0 mm"]
-size   = ["10 mm", "5 mm"]
-cells  = [10, 5]
-
-[analysis]
-end_time = "5 us"
-
-[material.glass]
-young_modulus = "32 GPa"
-poisson_ratio = 0.2
-density       = "2450 kg/m^3"
-
-[[body]]
-name     = "block"
-material = "glass"
-shape    = { rectangle = { min = ["0 mm", "0 mm"], max = ["10 mm", "5 mm"] } }
-particles_per_cell = [2, 2]
-[[body.traction]]
-edge   = "top"
-stress = ["0 MPa", "1 MPa"]
-
-[output]
-samples = 10
-frames  = ["0 us", "5 us"]
-"#;
+pub const BLOCK: &str = include_str!("block.toml");
 
 /// The block with a notch and a material that breaks.
-pub fn notched() -> String {
-    let fracture = "[material.glass.fracture]\ncritical_energy_release_rate = \"3 J/m^2\"\nlength_scale = \"1 mm\"\n\n";
-    let crack = "[[body.crack]]\nfrom = [\"0 mm\", \"2.5 mm\"]\nto = [\"4 mm\", \"2.5 mm\"]\nhalf_width = \"1 mm\"\n\n";
-    let pulled = "[[body.traction]]\nedge = \"bottom\"\nstress = [\"0 MPa\", \"-1 MPa\"]\n";
-    let text = BLOCK.replacen("[[body]]", &format!("{fracture}[[body]]"), 1);
-    text.replacen("[output]", &format!("{pulled}{crack}[output]"), 1)
-}
+pub const NOTCHED: &str = include_str!("notched.toml");
 
 /// A folder in which the binary is started, outside any workspace unless it is made one.
 pub struct Place {
@@ -77,6 +45,15 @@ impl Outcome {
     #[track_caller]
     pub fn with_status(self, expected: i32) -> Self {
         assert_eq!(self.status, expected, "{self:?}");
+        self
+    }
+
+    /// Fails unless standard output has all of these.
+    #[track_caller]
+    pub fn says(self, parts: &[&str]) -> Self {
+        for part in parts {
+            assert!(self.out.contains(part), "{part:?} is missing from standard output: {self:?}");
+        }
         self
     }
 
@@ -131,37 +108,53 @@ impl Place {
         names
     }
 
-    /// Starts `xtask` here.
-    pub fn xtask(&self, arguments: &[&str]) -> Outcome {
-        self.xtask_in(self.folder.path(), arguments)
+    /// A JSON file.
+    #[track_caller]
+    pub fn json(&self, name: &str) -> Value {
+        serde_json::from_str(&self.read(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
     }
 
-    /// Starts `xtask` in another folder.
-    pub fn xtask_in(&self, folder: &Path, arguments: &[&str]) -> Outcome {
-        self.start(Path::new(env!("CARGO_BIN_EXE_xtask")), folder, arguments)
+    /// Starts `xtask` here with the arguments of a line, as a shell reads it.
+    pub fn xtask(&self, line: &str) -> Outcome {
+        self.xtask_in("", line)
     }
 
-    /// Starts a copy of the binary in another folder.
-    pub fn start(&self, program: &Path, folder: &Path, arguments: &[&str]) -> Outcome {
-        let output = self.command_of(program, folder, arguments).output().expect("the binary starts");
-        let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8");
+    /// Starts `xtask` in a folder of this one.
+    pub fn xtask_in(&self, folder: &str, line: &str) -> Outcome {
+        self.start(Path::new(env!("CARGO_BIN_EXE_xtask")), folder, line)
+    }
+
+    /// Starts `xtask` here and fails unless it ends with 0.
+    #[track_caller]
+    pub fn succeeds(&self, line: &str) -> Outcome {
+        self.xtask(line).with_status(0)
+    }
+
+    /// Starts `xtask` here and fails unless it ends with 2 and standard error has all of these.
+    #[track_caller]
+    pub fn refuses(&self, line: &str, parts: &[&str]) -> Outcome {
+        self.xtask(line).with_status(2).complains_of(parts)
+    }
+
+    /// Starts a copy of the binary in a folder of this one.
+    pub fn start(&self, program: &Path, folder: &str, line: &str) -> Outcome {
+        let output = self.command(program, line).current_dir(self.path(folder)).output().expect("the binary starts");
         Outcome {
             status: output.status.code().expect("an exit status, not a signal"),
-            out: text(output.stdout),
-            err: text(output.stderr),
+            out: String::from_utf8(output.stdout).expect("UTF-8"),
+            err: String::from_utf8(output.stderr).expect("UTF-8"),
         }
     }
-}
 
-impl Place {
-    /// `xtask` here, to be started.
-    pub fn command(&self, arguments: &[&str]) -> Command {
-        self.command_of(Path::new(env!("CARGO_BIN_EXE_xtask")), self.folder.path(), arguments)
+    /// Starts `xtask` here and does not wait for it; its standard error can be read.
+    pub fn begin(&self, line: &str) -> Child {
+        let mut command = self.command(Path::new(env!("CARGO_BIN_EXE_xtask")), line);
+        command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("the binary starts")
     }
 
-    fn command_of(&self, program: &Path, folder: &Path, arguments: &[&str]) -> Command {
+    fn command(&self, program: &Path, line: &str) -> Command {
         let mut command = Command::new(program);
-        command.args(arguments).current_dir(folder);
+        command.args(shlex::split(line).expect("a line of a shell")).current_dir(self.folder.path());
         ["CARGO_MANIFEST_DIR", "COLUMNS", "LINES", "GITHUB_ACTIONS"].iter().for_each(|name| {
             command.env_remove(name);
         });
@@ -171,27 +164,37 @@ impl Place {
     }
 }
 
+/// Sends a signal such as `-INT`; exit status, if there is one, and standard error.
+pub fn end(child: Child, signal: &str) -> (Option<i32>, String) {
+    let id = child.id().to_string();
+    assert!(Command::new("kill").args([signal, &id]).status().expect("kill").success());
+    let output = child.wait_with_output().expect("it ends");
+    (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+}
+
+/// Waits until `there` is true, a minute at most; whether it is.
+pub fn wait_until(there: impl Fn() -> bool) -> bool {
+    let clock = Instant::now();
+    while !there() && clock.elapsed() < Duration::from_secs(60) {
+        sleep(Duration::from_millis(5));
+    }
+    there()
+}
+
 /// Paths of all keys, one per line; the entries of an array count as one.
 pub fn keys(value: &Value) -> String {
-    fn collect(value: &Value, path: &str, out: &mut Vec<String>) {
+    fn collect(value: &Value, path: &str) -> Vec<String> {
+        let below = |(key, value): (&String, &Value)| {
+            let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+            [vec![path.clone()], collect(value, &path)].concat()
+        };
         match value {
-            Value::Object(entries) => {
-                for (key, value) in entries {
-                    let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
-                    out.push(path.clone());
-                    collect(value, &path, out);
-                }
-            }
-            Value::Array(entries) => {
-                for entry in entries {
-                    collect(entry, &format!("{path}[]"), out);
-                }
-            }
-            _ => {}
+            Value::Object(entries) => entries.iter().flat_map(below).collect(),
+            Value::Array(entries) => entries.iter().flat_map(|entry| collect(entry, &format!("{path}[]"))).collect(),
+            _ => Vec::new(),
         }
     }
-    let mut out = Vec::new();
-    collect(value, "", &mut out);
-    out.dedup();
-    out.join("\n")
+    let mut paths = collect(value, "");
+    paths.dedup();
+    paths.join("\n")
 }

@@ -1,10 +1,10 @@
 //! Templates for runs over machines: those whose program is installed really run.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Command;
 
 use super::merge::workspace;
-use super::support::Place;
+use super::support::{Outcome, Place};
 
 fn template(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("templates").join(name)
@@ -18,21 +18,19 @@ fn installed(program: &str) -> bool {
     there
 }
 
-/// Runs a command in a workspace, with the binary under test in place of `cargo xtask`.
-fn run(place: &Place, program: &str, arguments: &[&str]) -> Output {
-    let mut command = Command::new(program);
-    command.args(arguments).current_dir(place.path("")).env("FISURA", env!("CARGO_BIN_EXE_xtask"));
-    command.env("CARGO_MANIFEST_DIR", place.path("xtask")).env_remove("GITHUB_ACTIONS");
-    command.output().expect("the program starts")
+/// A workspace in which templates start the binary under test in place of `cargo xtask`.
+fn place() -> Place {
+    let mut place = workspace();
+    place.variables = vec![("FISURA", env!("CARGO_BIN_EXE_xtask"))];
+    place
 }
 
 /// Whether the merged results hold the records of all five cases.
 #[track_caller]
-fn is_merged(place: &Place, folder: &str, output: &Output) {
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(place.path(folder).join("report.html").is_file(), "{said}");
-    let results: serde_json::Value = serde_json::from_str(&place.read(&format!("{folder}/results.json"))).unwrap();
-    assert_eq!(results["records"].as_array().unwrap().len(), 5, "{said}");
+fn is_merged(place: &Place, folder: &str, outcome: &Outcome) {
+    assert!(place.path(folder).join("report.html").is_file(), "{outcome:?}");
+    let results = place.json(&format!("{folder}/results.json"));
+    assert_eq!(results["records"].as_array().unwrap().len(), 5, "{outcome:?}");
 }
 
 #[test]
@@ -40,11 +38,9 @@ fn gnu_parallel_runs_slices_and_merges_them() {
     if !installed("parallel") {
         return;
     }
-    let place = workspace();
-    let script = template("parallel.sh");
-    let output = run(&place, "bash", &[script.to_str().unwrap(), "3", "out"]);
-    assert_eq!(output.status.code(), Some(1), "one check fails, and the merge says so: {output:?}");
-    is_merged(&place, "out/merged", &output);
+    let place = place();
+    let outcome = place.start(Path::new("bash"), "", &format!("{} 3 out", template("parallel.sh").display()));
+    is_merged(&place, "out/merged", &outcome.with_status(1));
 }
 
 #[test]
@@ -52,35 +48,27 @@ fn snakemake_runs_slices_and_merges_them() {
     if !installed("snakemake") {
         return;
     }
-    let place = workspace();
-    let (file, binary) = (template("Snakefile"), format!("fisura={}", env!("CARGO_BIN_EXE_xtask")));
-    let arguments = ["-s", file.to_str().unwrap(), "--cores", "2", "--config", "slices=3", "out=out", &binary];
-    let output = run(&place, "snakemake", &arguments);
-    assert!(output.status.success(), "{output:?}");
-    is_merged(&place, "out/merged", &output);
+    let place = place();
+    let (file, binary) = (template("Snakefile"), env!("CARGO_BIN_EXE_xtask"));
+    let line = format!("-s {} --cores 2 --config slices=3 out=out fisura={binary}", file.display());
+    is_merged(&place, "out/merged", &place.start(Path::new("snakemake"), "", &line).with_status(0));
 }
 
 /// The script as the tasks of an array would run it; one of its cases breaks down.
 #[test]
 fn tasks_of_a_slurm_array_leave_parts() {
-    let place = workspace();
+    let mut place = place();
     let unstable =
         place.read("verification/cases/plate/b.toml").replace("end_time = ", "time_step = \"1 us\"\nend_time = ");
     place.write("verification/cases/plate/b.toml", &unstable.replace("end_time = \"5 us\"", "end_time = \"500 us\""));
-    let script = template("slurm.sh");
+    let script = template("slurm.sh").display().to_string();
     for task in ["1", "2", "3"] {
-        let mut command = Command::new("bash");
-        command.arg(&script).current_dir(place.path("")).env("FISURA", env!("CARGO_BIN_EXE_xtask"));
-        command.env("CARGO_MANIFEST_DIR", place.path("xtask")).env_remove("GITHUB_ACTIONS");
-        command.envs([("SLURM_ARRAY_TASK_ID", task), ("SLURM_ARRAY_TASK_COUNT", "3")]);
-        let output = command.output().expect("bash starts");
-        assert!(output.status.success(), "{output:?}");
+        place.variables.extend([("SLURM_ARRAY_TASK_ID", task), ("SLURM_ARRAY_TASK_COUNT", "3")]);
+        place.start(Path::new("bash"), "", &script).with_status(0);
     }
-    let parts = ["1", "2", "3"].map(|k| format!("target/fisura/array/part-{k}"));
-    let output =
-        run(&place, env!("CARGO_BIN_EXE_xtask"), &["merge", &parts[0], &parts[1], &parts[2], "--out", "merged"]);
-    assert_eq!(output.status.code(), Some(3), "a case broke down, and the merge says so: {output:?}");
-    is_merged(&place, "merged", &output);
+    let parts = [1, 2, 3].map(|k| format!("target/fisura/array/part-{k}")).join(" ");
+    let merged = place.xtask(&format!("merge {parts} --out merged"));
+    is_merged(&place, "merged", &merged.with_status(3));
 }
 
 #[test]

@@ -1,48 +1,35 @@
 //! `run --vtk`: files for ParaView at every frame, and none without it.
 
-use super::support::{BLOCK, Place, notched};
+use super::support::{BLOCK, NOTCHED, Place};
+use super::vtu;
 
 const FILES: [&str; 6] = ["grid-0.vtu", "grid-1.vtu", "grid.pvd", "points-0.vtu", "points-1.vtu", "points.pvd"];
 
-const RUN: [&str; 4] = ["run", "scene.toml", "--out", "out"];
+const RUN: &str = "run scene.toml --out out";
+const RUN_VTK: &str = "run scene.toml --out out --vtk";
 
 fn vtk_files(place: &Place) -> Vec<String> {
     place.files("out").into_iter().filter(|name| name.ends_with(".vtu") || name.ends_with(".pvd")).collect()
 }
 
-/// Points, cells and names of the fields, from the header, behind which its arrays follow each other.
+/// Points, cells and names of the fields of a file.
 fn parse(place: &Place, name: &str) -> (usize, usize, Vec<String>) {
     let bytes = std::fs::read(place.path(&format!("out/{name}"))).expect("a file");
-    let mark = b"<AppendedData encoding=\"raw\">\n_";
-    let start = bytes.windows(mark.len()).position(|window| window == mark).expect("appended data");
-    let (header, data) = bytes.split_at(start + mark.len());
-    let text = std::str::from_utf8(header).expect("text");
-    let values = |text: &str, name: &str| -> Vec<String> {
-        let start = format!("{name}=\"");
-        let after = text.split(&start).skip(1);
-        after.map(|rest| rest.split('"').next().expect("a value").to_string()).collect()
-    };
-    let mut end = 0_usize;
-    for offset in values(text, " offset") {
-        assert_eq!(offset, end.to_string(), "arrays follow each other");
-        end += 8 + u64::from_le_bytes(data[end..end + 8].try_into().expect("eight bytes")) as usize;
-    }
-    assert!(end > 0 && data[end..].starts_with(b"\n</AppendedData>"), "nothing is left over");
-    let number = |name: &str| values(text, name)[0].parse().expect("a number");
-    let fields = text.split("</PointData>").next().expect("fields");
-    (number("NumberOfPoints"), number("NumberOfCells"), values(fields, " Name"))
+    let (header, arrays) = vtu::parse(&bytes);
+    let number = |name: &str| vtu::value(&header, name).parse().expect("a number");
+    let fields = header.split("</PointData>").next().expect("fields").matches("<DataArray ").count();
+    let names = arrays.into_iter().take(fields).map(|array| array.0).collect();
+    (number("NumberOfPoints"), number("NumberOfCells"), names)
 }
 
 #[test]
 fn a_cracking_scene_gives_points_and_grid_of_every_frame() {
     for frame in ["total", "updated"] {
-        let text = notched().replace("end_time = \"5 us\"", &format!("end_time = \"5 us\"\nframe = \"{frame}\""));
+        let text = NOTCHED.replace("end_time = \"5 us\"", &format!("end_time = \"5 us\"\nframe = \"{frame}\""));
         let place = Place::with("scene.toml", &text);
-        let run = place.xtask(&[&RUN[..], &["--vtk"]].concat()).with_status(0);
-        assert!(FILES.iter().all(|name| run.out.contains(name)), "{run:?}");
+        place.succeeds(RUN_VTK).says(&FILES);
         assert_eq!(vtk_files(&place), FILES);
-        let summary: serde_json::Value = serde_json::from_str(&place.read("out/summary.json")).unwrap();
-        let particles = summary["particles"].as_u64().unwrap() as usize;
+        let particles = place.json("out/summary.json")["particles"].as_u64().unwrap() as usize;
         for number in [0, 1] {
             let (points, cells, names) = parse(&place, &format!("points-{number}.vtu"));
             assert_eq!((points, cells), (particles, particles), "{frame}");
@@ -66,25 +53,23 @@ fn a_cracking_scene_gives_points_and_grid_of_every_frame() {
 #[test]
 fn without_vtk_there_are_no_files_for_paraview_and_those_of_the_run_before_go() {
     let place = Place::with("scene.toml", BLOCK);
-    place.xtask(&[&RUN[..], &["--vtk"]].concat()).with_status(0);
+    place.succeeds(RUN_VTK);
     assert!(parse(&place, "points-0.vtu").2.iter().all(|name| !name.contains("phase")), "an elastic body has none");
     place.write("out/points-mine.vtu", "mine");
-    place.xtask(&[&RUN[..], &["--vtk", "--set", "output.frames=[0]"]].concat()).with_status(0);
+    place.succeeds(&format!("{RUN_VTK} --set output.frames=[0]"));
     assert_eq!(vtk_files(&place), ["grid-0.vtu", "grid.pvd", "points-0.vtu", "points-mine.vtu", "points.pvd"]);
-    let run =
-        place.xtask(&RUN).with_status(0).complains_of(&["4 files for ParaView of an earlier run in out are removed"]);
+    let run = place.succeeds(RUN).complains_of(&["4 files for ParaView of an earlier run in out are removed"]);
     assert_eq!(run.err.lines().count(), 1, "{run:?}");
     assert_eq!(vtk_files(&place), ["points-mine.vtu"]);
-    assert_eq!(place.xtask(&RUN).with_status(0).err, "", "there is nothing to tell");
+    assert_eq!(place.succeeds(RUN).err, "", "there is nothing to tell");
 }
 
 #[test]
 fn a_file_for_paraview_that_cannot_be_written_costs_nothing_else() {
     let place = Place::with("scene.toml", BLOCK);
-    place.xtask(&RUN).with_status(0);
+    place.succeeds(RUN);
     place.write("out/points-0.vtu/file", "in the way");
-    let run = place.xtask(&[&RUN[..], &["--vtk"]].concat()).with_status(2);
-    run.complains_of(&["points-0.vtu cannot be written", "the run continues", "--out"]);
+    place.refuses(RUN_VTK, &["points-0.vtu cannot be written", "the run continues", "--out"]);
     assert!(place.path("out/history.csv").is_file() && place.path("out/points-1.vtu").is_file());
     assert!(!place.read("out/points.pvd").contains("points-0.vtu"), "what is not there is not listed");
 }
