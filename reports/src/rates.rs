@@ -115,23 +115,3 @@ impl Rate<'_> {
         self.finest.and_then(value).unwrap_or_else(|| "none".to_string())
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::example::results;
-    use crate::number::plain;
-
-    #[test]
-    fn rates_are_found_by_their_words_and_matched_with_their_errors() {
-        let set = results();
-        let records: Vec<&Record> = set.records.iter().filter(|r| r.suite == "manufactured").collect();
-        let rates = rates(&records);
-        assert_eq!(rates.len(), 4);
-        let cells: Vec<_> = rates.iter().map(|r| r.cells(plain)).collect();
-        let l2 = ["p = 1", "displacement error in L2", "2", "1.998", "≥ 1.9", "0.000489"].map(String::from);
-        assert_eq!(cells[0], l2);
-        assert_eq!(cells[3][5], "none", "no record of its error");
-        assert_eq!(rates[3].observed(plain), "none");
-    }
-}

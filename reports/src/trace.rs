@@ -181,15 +181,11 @@ mod tests {
     }
 
     #[test]
-    fn a_missing_value_breaks_the_line() {
-        let points = [(0.0, 0.1), (0.2, 0.2), (0.4, f64::NAN), (0.6, 0.3), (0.8, 0.4)];
-        let pieces = pieces(&points, &unit(), &unit());
-        assert_eq!(pieces, [vec![(0.0, 0.1), (0.2, 0.2)], vec![(0.6, 0.3), (0.8, 0.4)]]);
-    }
-
-    #[test]
-    fn lines_end_at_the_frame() {
-        let pieces = pieces(&[(-1.0, 0.5), (0.5, 0.5), (0.5, 3.0), (0.7, 3.0)], &unit(), &unit());
-        assert_eq!(pieces, [vec![(0.0, 0.5), (0.5, 0.5), (0.5, 1.0)]]);
+    fn lines_are_broken_at_missing_values_and_end_at_the_frame() {
+        let drawn = |points: &[Point]| pieces(points, &unit(), &unit());
+        let gap = [(0.0, 0.1), (0.2, 0.2), (0.4, f64::NAN), (0.6, 0.3), (0.8, 0.4)];
+        assert_eq!(drawn(&gap), [gap[..2].to_vec(), gap[3..].to_vec()]);
+        let beyond = [(-1.0, 0.5), (0.5, 0.5), (0.5, 3.0), (0.7, 3.0)];
+        assert_eq!(drawn(&beyond), [vec![(0.0, 0.5), (0.5, 0.5), (0.5, 1.0)]]);
     }
 }

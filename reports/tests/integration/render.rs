@@ -42,6 +42,15 @@ fn reports_keep_their_form_and_the_page_its_structure() {
     let rates = page.split("<table class=\"rates\">").nth(1).and_then(|t| t.split("</table>").next()).unwrap();
     assert_eq!(rates.matches("<td><a href=\"#check-manufactured-bar-").count(), 4, "one row per order: {rates}");
     assert_eq!(rates.matches("A manufactured bar").count(), 1, "the claim stands once per case");
+    for cells in [
+        "p = 1</td>\n<td>displacement error in L2</td>\n<td>2</td>\n<td>1.998</td>\n<td>≥ 1.9</td>\n<td>0.000489<",
+        "p = 2</td>\n<td>displacement error in H1</td>\n<td>2</td>\n<td><i>none</i></td>\n<td>≥ 1.9</td>\n<td><i>none<",
+    ] {
+        assert!(
+            rates.contains(cells),
+            "{cells:?} is missing: without a record there is neither order nor error: {rates}"
+        );
+    }
     for target in page.split("href=\"#").skip(1).map(|t| t.split('"').next().unwrap_or_default()) {
         assert!(page.contains(&format!("id=\"{target}\"")), "#{target} leads nowhere");
     }
