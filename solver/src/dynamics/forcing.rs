@@ -43,17 +43,3 @@ pub trait Forcing: Debug + Send + Sync {
         0.0
     }
 }
-
-/// No loads.
-#[derive(Debug, Clone, Copy)]
-pub struct NoLoads;
-
-impl Forcing for NoLoads {
-    fn acts_inside(&self) -> bool {
-        false
-    }
-
-    fn volume(&self, _position: [f64; 2], _time: f64) -> VolumeLoad {
-        VolumeLoad::default()
-    }
-}

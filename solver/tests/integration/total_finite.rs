@@ -3,9 +3,23 @@
 use std::sync::Arc;
 
 use crate::common::{Random, closure_of_any_sample, elastic_scene, relative_closure, run};
-use fisura::dynamics::forcing::NoLoads;
+use fisura::dynamics::forcing::{Forcing, VolumeLoad};
 use fisura::dynamics::total_frame::TotalFrame;
 use fisura::scene::*;
+
+/// No loads.
+#[derive(Debug)]
+struct NoLoads;
+
+impl Forcing for NoLoads {
+    fn acts_inside(&self) -> bool {
+        false
+    }
+
+    fn volume(&self, _position: [f64; 2], _time: f64) -> VolumeLoad {
+        VolumeLoad::default()
+    }
+}
 
 /// Elastic energy (J) under the displacement `(A − I) X`.
 fn energy(degree: usize, kinematics: Kinematics, a: [[f64; 2]; 2]) -> f64 {

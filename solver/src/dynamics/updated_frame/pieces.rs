@@ -213,7 +213,7 @@ mod tests {
         let places: Vec<[f64; 2]> =
             (0..400).map(|i| [f64::from(i % 20) * 0.37 - 3.0, f64::from(i / 20) * 0.41 - 4.0]).collect();
         let neighbours = Neighbours::new(places.iter().copied(), 0.9);
-        let distance = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
+        let distance = |from: [f64; 2], to: [f64; 2]| (from[0] - to[0]).hypot(from[1] - to[1]);
         for place in &places {
             let mut found: Vec<usize> =
                 neighbours.near(*place).filter(|at| distance(*place, places[*at]) <= 0.9).collect();
