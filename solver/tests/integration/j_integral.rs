@@ -53,6 +53,20 @@ fn a_running_crack_has_the_j_integral_that_its_surface_costs() {
 }
 
 #[test]
+fn energy_flows_into_both_ends_of_a_slit() {
+    let mut scene = strip(1.0e-6);
+    scene.analysis.end_time = 1e-9;
+    scene.output.samples = 1;
+    scene.bodies[0].cracks = vec![Crack { points: vec![[0.010, 0.004], [0.018, 0.004]], kind: CrackKind::Slit }];
+    let at = |x, name: &str| JIntegral { name: Some(name.into()), radius: 2e-3, at: Some([x, 0.004]), angle: None };
+    scene.output.j_integrals = vec![at(0.010, "left"), at(0.018, "right")];
+    let samples = run(&scene).1;
+    let [left, right] = ["left", "right"].map(|name| column(&samples[0], &format!("{name}_j_integral_j_per_m2")));
+    assert!(right > 0.0);
+    approx::assert_relative_eq!(left, right, max_relative = 1e-6);
+}
+
+#[test]
 fn what_a_j_integral_does_not_know_is_refused() {
     let keys = |change: &dyn Fn(&mut Scene)| {
         let mut scene = strip(1e-6);

@@ -160,3 +160,15 @@ fn elastic_energies_close_on_curved_patches() {
         }
     }
 }
+
+#[test]
+fn a_probe_off_the_patch_is_refused() {
+    let mut scene = patch_scene(&annulus(2, 6), 3);
+    let corners = &scene.mesh.geometry.as_ref().unwrap().control_points;
+    let [x, y] = corners[0];
+    for (at, found) in [([x, y], 0), ([0.0, 0.0], 1), ([10.0 * x, 10.0 * y], 1)] {
+        scene.output.probes = vec![Probe { name: "place".into(), at }];
+        let errors = fisura::validate::validate(&scene).err().unwrap_or_default();
+        assert_eq!(errors.iter().filter(|error| error.key == "output.probe.0.at").count(), found, "{at:?}");
+    }
+}

@@ -134,3 +134,26 @@ fn an_overlap_at_the_start_is_energy_put_in() {
         assert!(last.kinetic + last.elastic > 0.8 * first);
     }
 }
+
+/// A corner reaches just into a span at many of these places. The functions there have slopes, but next to no
+/// mass.
+#[test]
+fn turned_bodies_in_contact_do_not_take_much_shorter_steps() {
+    let step = |angle: f64, shift: f64| {
+        let mut scene = discs(2, 20, 0.1);
+        let turned = |[x, y]: [f64; 2], center: [f64; 2]| {
+            let (sin, cos) = angle.sin_cos();
+            [center[0] + x * cos - y * sin + shift, center[1] + x * sin + y * cos + 0.7 * shift]
+        };
+        for (body, center) in scene.bodies.iter_mut().zip([[0.4, 0.6], [1.0, 0.6]]) {
+            let corners = [[-0.2, -0.1], [0.2, -0.1], [0.2, 0.1], [-0.2, 0.1]];
+            body.shape = Shape::Polygon { points: corners.map(|corner| turned(corner, center)).to_vec() };
+        }
+        Simulation::new(&scene).unwrap().plan().step
+    };
+    let along = step(0.0, 0.0);
+    for (angle, shift) in (0..24).map(|i| (0.13 + 0.061 * f64::from(i), 0.0023 * f64::from(i))) {
+        let share = step(angle, shift) / along;
+        assert!(share > 0.5, "{share} at {angle} and {shift}");
+    }
+}
