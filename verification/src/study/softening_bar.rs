@@ -84,8 +84,8 @@ impl<'a> Bar<'a> {
         Ok(Self { scene, material, fracture, strength: tensile_strength, law, length, height, span })
     }
 
-    /// Stress against opening beside the law, the largest stress over the strength, and the surface energy in the
-    /// end over Gc.
+    /// Stress against opening beside the law, the largest stress over the strength, and the surface energy in
+    /// the end over Gc.
     fn pull(&self) -> Result<(Table, f64, f64), StudyError> {
         let scene = &self.scene.scene;
         let lattice = Lattice::new(&Patch::new(&scene.mesh), &scene.bodies[0]);

@@ -23,9 +23,9 @@ pub(in super::super) fn study(_case: &Case, scenes: &[CaseScene], findings: &mut
     Ok(())
 }
 
-/// Gap at the first force of contact and gap at which a control point first has mass of both bodies, in spans;
-/// largest change of the momentum of a body before that force, over its first momentum; force in the end over
-/// momentum, 1/s.
+/// Gap at the first force of contact and gap at which a control point first has mass of both bodies, in
+/// spans; largest change of the momentum of a body before that force, over its first momentum; force in the
+/// end over momentum, 1/s.
 fn approach(scene: &Scene) -> Result<[f64; 4], StudyError> {
     let [one, two] = scene.bodies.as_slice() else {
         return Err(other("this study needs two blocks"));

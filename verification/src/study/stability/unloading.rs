@@ -44,8 +44,8 @@ pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene], findings: &mut
     Ok(())
 }
 
-/// Sum of V H and elastic energy against time, and the largest fall of the history of a point in a step over the
-/// largest history.
+/// Sum of V H and elastic energy against time, and the largest fall of the history of a point in a step over
+/// the largest history.
 fn vibrate(frame: Frame) -> Result<(Table, f64), StudyError> {
     let mut simulation = Simulation::new(&bar(frame))?;
     let mut table = Table::new(&["time_s", "history_j_per_m", "elastic_j_per_m"]);
