@@ -9,7 +9,7 @@ use std::process::Command;
 use sha2::{Digest, Sha256};
 
 /// What results depend on, below the root of the workspace.
-const SOURCES: [&str; 10] = [
+const SOURCES: [&str; 11] = [
     "Cargo.lock",
     "Cargo.toml",
     "reports/Cargo.toml",
@@ -18,6 +18,7 @@ const SOURCES: [&str; 10] = [
     "solver/Cargo.toml",
     "solver/src",
     "verification/Cargo.toml",
+    "verification/templates",
     "verification/src",
     "xtask/src",
 ];
