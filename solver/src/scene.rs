@@ -227,8 +227,8 @@ pub struct JIntegral {
     pub radius: f64,
     /// Where the tip is (m), if it does not move; absent: the tip of the crack.
     pub at: Option<[f64; 2]>,
-    /// Angle of the direction in which the crack goes, rad; absent: that of the crack that ends at `at`, or of
-    /// the end of the first crack.
+    /// Angle of the direction in which the crack goes, rad; absent: that of the crack that ends at `at`, or
+    /// of the end of the first crack.
     pub angle: Option<f64>,
 }
 

@@ -7,9 +7,9 @@
 //! ```
 //!
 //! and cubics lie between them ([`arc`](crate::contact::gap_potential::arc)). A corner has the tangent of a
-//! parabola through its neighbour instead: functions that only just reach a corner have slopes there, but next
-//! to no mass, and would shorten the critical step up to seventyfold. A force at a place of a cubic
-//! acts on the control points by the same shares, as its work asks; a couple acts on the tangent. Both keep
+//! parabola through its neighbour instead. Functions that only just reach a corner have slopes there, but
+//! next to no mass, and would shorten the critical step up to seventyfold. A force at a place of a cubic acts
+//! on the control points by the same shares, as its work asks; a couple acts on the tangent. Both keep
 //! momentum and angular momentum.
 //!
 //! The critical step counts a spring of twice κ all along the boundary: for two equal bodies that is what
