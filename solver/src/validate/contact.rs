@@ -174,7 +174,8 @@ fn overlaps(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) -> bool
                 .map(|(one, other, inside)| depth(&steps[one], &surfaces[other], inside, 2.0 * least));
             let deepest = larger(a_in_b, b_in_a);
             if deepest > least {
-                let message = format!("body {:?} overlaps body {:?} by {deepest:.3e} m at t = 0", b.name, a.name);
+                let by = deepest + 2.0 * least;
+                let message = format!("body {:?} overlaps body {:?} by {by:.3e} m or more at t = 0", b.name, a.name);
                 findings.error(format!("body.{j}.shape"), message, "move the bodies apart until they touch at most");
             }
             if findings.errors.len() >= errors + MOST_OVERLAPS {

@@ -107,13 +107,14 @@ fn filled(
     }
 }
 
-/// Probes lie in the body, under names that differ as columns.
+/// A body of the total frame may fall into parts.
 fn counts_fragments(scene: &Scene) -> bool {
     let is_brittle =
         |body: &Body| scene.materials.get(&body.material).is_some_and(|material| material.fracture.is_some());
     scene.analysis.frame == Frame::Total && scene.bodies.iter().any(is_brittle)
 }
 
+/// Probes lie in a body and on the patch, under names that differ as columns.
 fn probes(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
     let probes = &scene.output.probes;
     let on_patch = |at| ground.patch.as_ref().is_none_or(|patch| patch.locate(at, None).is_ok());

@@ -104,6 +104,18 @@ impl BoundaryNode {
     }
 }
 
+/// Sets the tangents at the ends of a part of the boundary that are corners.
+fn turn_corners(part: &mut [BoundaryNode], [first, last]: [bool; 2]) {
+    let end = part.len() - 1;
+    let bend = if end == 1 && first && last { 0.0 } else { 1.0 };
+    if first {
+        part[0] = part[0].at_corner(&part[1], 1.0, bend);
+    }
+    if last {
+        part[end] = part[end].at_corner(&part[end - 1], -1.0, bend);
+    }
+}
+
 /// The boundary of a body.
 #[derive(Debug, Clone)]
 pub(super) struct MaterialBoundary {
@@ -131,19 +143,16 @@ impl MaterialBoundary {
             Ok(BoundaryNode::new(point.position, *tangent, &functions(point)?))
         };
         let of_part = |part: &Vec<_>| part.iter().map(of_step).collect::<Result<Vec<_>, E>>();
-        let parts = steps(shape, mesh, shortest).iter().map(of_part).collect::<Result<Vec<_>, E>>()?;
+        let parts: Vec<_> = steps(shape, mesh, shortest).iter().map(of_part).collect::<Result<_, E>>()?;
+        let is_corner = |part: &Vec<BoundaryNode>| {
+            let (first, last) = (&part[0], &part[part.len() - 1]);
+            let goes_on = |other: &Vec<BoundaryNode>| last.goes_on_at(&other[0]);
+            [!parts.iter().any(|other| other[other.len() - 1].goes_on_at(first)), !parts.iter().any(goes_on)]
+        };
+        let corners: Vec<_> = parts.iter().map(is_corner).collect();
         let (mut nodes, mut arcs, rule) = (Vec::new(), Vec::new(), rule());
-        for mut part in parts.clone() {
-            let last = part.len() - 1;
-            let is_corner = [
-                !parts.iter().any(|other| other[other.len() - 1].goes_on_at(&part[0])),
-                !parts.iter().any(|other| part[last].goes_on_at(&other[0])),
-            ];
-            let bend = if last == 1 && is_corner == [true; 2] { 0.0 } else { 1.0 };
-            let ends = [part[0].at_corner(&part[1], 1.0, bend), part[last].at_corner(&part[last - 1], -1.0, bend)];
-            for ((end, at), _) in ends.into_iter().zip([0, last]).zip(is_corner).filter(|(_, is_corner)| *is_corner) {
-                part[at] = end;
-            }
+        for (mut part, corners) in parts.into_iter().zip(corners) {
+            turn_corners(&mut part, corners);
             for (step, ends) in part.windows(2).enumerate() {
                 let [positions, tangents] = [[0, 1].map(|i| ends[i].position), [0, 1].map(|i| ends[i].tangent)];
                 arcs.push((nodes.len() + step, Arc::new(positions, tangents, &rule)));
