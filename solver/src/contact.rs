@@ -7,7 +7,7 @@
 //! gap g are their means, with more weight where the gap is smaller. So constraints are as many as control
 //! points can tell apart, and neither body is the master of the other. An impulse P acts there on one body,
 //! −P on the other. Both spread it over control points with weights W that stand for the same position x
-//! ([`mod@boundary_functions`]),
+//! ([`mod@constraint`]),
 //!
 //! ```text
 //! f_I = ± W_I P,        v_rel = Σ W_I^b v_I^b − Σ W_I^a v_I^a,        Σ W_I = 1,   Σ W_I x_I = x,
@@ -25,7 +25,7 @@
 //! lost: that is the contact loss of the ledger, half of it booked with the velocity the step begins with,
 //! half with the one it ends with. A rigid body does external work with its own velocity.
 
-pub mod boundary_functions;
+pub mod constraint;
 pub(crate) mod crack_faces;
 mod encounter;
 pub(crate) mod gap_potential;
@@ -44,8 +44,8 @@ use crate::linear_algebra::extremes::{around, larger};
 use crate::linear_algebra::vectors::{dot, unit};
 use crate::scene::Scene;
 use crate::splines::patch::Patch;
-pub use boundary_functions::{BodyView, ContactConstraint};
-use boundary_functions::{BoundaryFunctions, Impulse};
+pub use constraint::{BodyView, ContactConstraint};
+use constraint::{BoundaryFunctions, Impulse};
 use encounter::{Encounter, Sight, Squares};
 use motion::{AHEAD, MOST, TooFast};
 pub(crate) use rigid::RigidBody;

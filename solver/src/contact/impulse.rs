@@ -7,7 +7,7 @@ use std::collections::HashMap;
 
 use thiserror::Error;
 
-use super::boundary_functions::{BodyView, ContactConstraint, Impulse};
+use super::constraint::{BodyView, ContactConstraint, Impulse};
 use super::{ContactLedger, ContactSolver};
 use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::vectors::dot;

@@ -1,5 +1,4 @@
-//! What several checks ask of the mesh, and of a body, which is looked at position by position, and what they
-//! found so far.
+//! What several checks share: questions to the mesh, a look at a body position by position, and the findings.
 
 use std::cell::Cell;
 

@@ -3,7 +3,7 @@
 
 use crate::common::{body, elastic_scene, rectangle, run};
 use fisura::Simulation;
-use fisura::contact::boundary_functions::BoundaryFunctions;
+use fisura::contact::constraint::BoundaryFunctions;
 use fisura::dynamics::updated_frame::UpdatedFrame;
 use fisura::scene::*;
 use fisura::simulation::breakdown::Breakdown;

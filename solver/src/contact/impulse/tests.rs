@@ -3,7 +3,7 @@
 mod three_fields;
 
 use super::*;
-use crate::contact::boundary_functions::BoundaryFunctions;
+use crate::contact::constraint::BoundaryFunctions;
 
 /// A constraint of body 0 on the left with a rigid body, which pushes it along the normal.
 fn constraint(normal: [f64; 2], x: f64) -> ContactConstraint {

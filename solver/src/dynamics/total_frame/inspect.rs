@@ -1,5 +1,5 @@
-//! The points of a body in the total frame, one by one, the spans they are in, and pictures of them: for
-//! looking at a run. How far material is distorted, which small strains do not follow.
+//! What a run shows of a body in the total frame: points one by one, the spans they are in, and pictures. It
+//! also finds material that is distorted too far for small strains.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,6 +1,6 @@
-//! The points of the bodies in the updated frame, one by one, the spans they are in, and pictures of them:
-//! for looking at a run. How far material is distorted, which small strains do not follow. Bodies recorded
-//! one by one: centres, velocities, spins and the forces between them.
+//! What a run shows of the updated frame: points one by one, the spans they are in, pictures, and columns of
+//! each body (centres, velocities, spins, forces between bodies). It also finds material that is distorted
+//! too far for small strains.
 
 use super::UpdatedFrame;
 use super::begin::center_of_mass;

@@ -3,7 +3,7 @@
 //! stated for these impulses and judged by its tolerances.
 
 use super::super::*;
-use crate::contact::boundary_functions::BoundaryFunctions;
+use crate::contact::constraint::BoundaryFunctions;
 
 /// Tolerances of GEOS: velocities and momentum (relative to the largest), momentum, impulses and gaps.
 const VELOCITY: f64 = 1e-8;

@@ -1,11 +1,8 @@
-//! The control points that stand for a position on the boundary of a body.
+//! Constraints of contact: the places where two bodies are near each other, and what acts there.
 //!
-//! They are those of its shape functions there, as for loads and conditions on edges (`particles::follower`):
-//! affine velocity fields have their values at the position, and an impulse is spread with neither momentum
-//! nor torque lost.
-//!
-//! With them go what contact sees of a body, how the boundary moves with it, and the places where bodies are
-//! near each other.
+//! The control points that stand for a place on the boundary of a body are those of its shape functions
+//! there, as for loads and conditions on edges (`particles::follower`). Affine velocity fields have their
+//! values at the place, and an impulse is spread with neither momentum nor torque lost.
 
 use std::collections::BTreeSet;
 
