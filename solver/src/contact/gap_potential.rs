@@ -152,7 +152,9 @@ impl GapPotential {
                 }
             }
         }
-        self.friction.iter_mut().for_each(Friction::end);
+        if let Some(friction) = &mut self.friction {
+            friction.end(outlines);
+        }
         if !self.rigid.is_empty() {
             let power = self.power_of_rigid_bodies(deformable, &poses);
             self.work += 0.5 * dt * (self.power + power);
@@ -185,14 +187,17 @@ impl GapPotential {
                 }
                 let pressure = 0.5 * spring * depth * place.length;
                 self.energy += 0.5 * pressure * depth;
+                let (bodies, labels) = ([a, b], [(number, t), nearest.label]);
                 let friction = self.friction.as_mut().map(|friction| {
-                    let (label, stiffness) = (([a, b], number, point), 0.5 * spring * place.length);
-                    friction.force(&ContactPoint { label, place, nearest, arcs: &outlines[b].arcs, stiffness })
+                    let tangent = [-nearest.direction[1], nearest.direction[0]];
+                    let stiffness = 0.5 * spring * place.length;
+                    let point = ContactPoint { bodies, number: point, labels, tangent, depth, stiffness };
+                    friction.force(point, outlines)
                 });
                 self.forces.push(GapForce {
-                    bodies: [a, b],
+                    bodies,
                     places: [place.position, nearest.position],
-                    labels: [(number, t), nearest.label],
+                    labels,
                     force: nearest.direction.map(|out| -pressure * out),
                     friction,
                 });

@@ -69,7 +69,7 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
             if crack.is_slit() {
                 cracks::slit(&format!("{key}.crack.{j}"), crack, scene, ground, findings);
             }
-            cracks::check(&format!("{key}.crack.{j}"), crack, fracture, &look, findings);
+            cracks::check(&format!("{key}.crack.{j}"), crack, scene.materials.get(&body.material), &look, findings);
         }
         if placed && (0..2).all(|d| has_rule(body, d)) {
             let fracture = fracture.filter(|_| findings.errors.len() == before);

@@ -47,7 +47,7 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
     }
     match &scene.contact {
         Some(contact) if scene.bodies.len() == 1 && !contact.fragments && !contact.self_contact => {
-            findings.warn("contact", "there is only one body; remove the table");
+            findings.warn("contact", "there is only one body, and it does not meet itself; add self_contact = true in the total frame, or remove the table");
         }
         Some(_) if ground.is_sound && overlaps(scene, ground, findings) => {
             speeds(scene, findings);

@@ -10,8 +10,9 @@ use super::ground::{Findings, Ground, Look, MOST_POSITIONS};
 use super::points::{Near, Points};
 use crate::linear_algebra::extremes::larger;
 use crate::material::degradation::BROKEN;
+use crate::material::elasticity::ElasticModuli;
 use crate::phase_field::fracture::{SEED_STRENGTH, half_width};
-use crate::scene::{Body, Crack, CrackKind, Fracture, Frame, Mass, Scene};
+use crate::scene::{Body, Crack, CrackKind, Fracture, Frame, Mass, Material, Scene};
 use crate::splines::nurbs::NurbsPatch;
 
 /// Distance from a knot line that counts as none, of the range of a parameter; and places on a straight part
@@ -69,7 +70,8 @@ fn follows_knots(patch: &NurbsPatch, [from, to]: [[f64; 2]; 2]) -> bool {
 }
 
 /// A crack that is driven grows by the history field of the total frame.
-fn driven(key: &str, speed: f64, fracture: Option<&Fracture>, look: &Look<'_>, findings: &mut Findings) {
+fn driven(key: &str, speed: f64, material: Option<&Material>, look: &Look<'_>, findings: &mut Findings) {
+    let fracture = material.and_then(|material| material.fracture.as_ref());
     let key = format!("{key}.speed");
     if look.frame == Frame::Updated {
         let message = "a crack that is driven is implemented in the total frame";
@@ -79,12 +81,21 @@ fn driven(key: &str, speed: f64, fracture: Option<&Fracture>, look: &Look<'_>, f
         let message = format!("a crack that is driven is not implemented with {}", model.word());
         findings.error(key.clone(), message, "use model = \"at2\", or leave speed out");
     }
-    findings.positive(key, speed, "speed = \"500 m/s\"");
+    let waves = material.map(|material| ElasticModuli::new(material, look.plane).rayleigh_speed(material.density));
+    if findings.positive(key.clone(), speed, "speed = \"500 m/s\"")
+        && let Some(waves) = waves.filter(|waves| speed > *waves)
+    {
+        findings.warn(
+            key,
+            format!("faster than Rayleigh waves ({waves:.4e} m/s): an opening crack takes up no energy at this speed"),
+        );
+    }
 }
 
-pub(super) fn check(key: &str, crack: &Crack, fracture: Option<&Fracture>, look: &Look<'_>, findings: &mut Findings) {
+pub(super) fn check(key: &str, crack: &Crack, material: Option<&Material>, look: &Look<'_>, findings: &mut Findings) {
+    let fracture = material.and_then(|material| material.fracture.as_ref());
     if let CrackKind::Driven(speed) = crack.kind {
-        driven(key, speed, fracture, look, findings);
+        driven(key, speed, material, look, findings);
     }
     if let CrackKind::Seed(Some(half_width)) = crack.kind {
         if let Some(model) = fracture.map(|fracture| fracture.model).filter(|model| model.has_threshold()) {

@@ -5,7 +5,7 @@ use std::cell::Cell;
 use super::geometry::complexity;
 use crate::particles::spans::{lengths_of_chords, lengths_of_spans};
 use crate::scene::error::{SceneError, SceneWarning};
-use crate::scene::{Analysis, Body, Frame, Mesh, Shape, Side};
+use crate::scene::{Analysis, Body, Frame, Mesh, Plane, Shape, Side};
 use crate::splines::nurbs::NurbsPatch;
 use crate::splines::spline::SplineSpace;
 
@@ -54,6 +54,7 @@ pub(super) struct Look<'a> {
     /// End of the simulated time, s.
     pub end_time: f64,
     pub frame: Frame,
+    pub plane: Plane,
     tolerance: f64,
     /// Parameters of the last position found on the patch.
     last: Cell<Option<[f64; 2]>>,
@@ -71,6 +72,7 @@ impl<'a> Look<'a> {
             ground,
             end_time: analysis.end_time,
             frame: analysis.frame,
+            plane: analysis.plane,
             tolerance: TOLERANCE * (max[0] - min[0]).max(max[1] - min[1]),
             last: Cell::new(None),
             most: (MOST_LOOKS / cost.max(1)).clamp(2, MOST_POSITIONS),

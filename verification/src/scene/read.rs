@@ -39,6 +39,9 @@ pub fn read_scene(node: &Node, prefix: &str, folder: &Path) -> Result<Scene, Vec
 }
 
 fn scene(item: &Item<'_>) -> Option<Scene> {
+    if let Some(claim) = item.at("claim") {
+        return claim.fail("a case, not a scene", "run it with `cargo xtask verify --case NAME`");
+    }
     let fields = item.fields(&SCENE_KEYS)?;
     let title = fields.or("title", String::new(), Item::text);
     let analysis = fields.need("analysis", "a table [analysis] with end_time", analysis);
@@ -46,7 +49,8 @@ fn scene(item: &Item<'_>) -> Option<Scene> {
     let mut materials = fields.or("material", BTreeMap::new(), materials);
     let frame = analysis.as_ref().map_or(Frame::Total, |analysis| analysis.frame);
     let degree = degree(item.node).unwrap_or([2; 2]);
-    let only = materials.keys().next().filter(|_| materials.len() == 1).cloned();
+    let named = fields.get("material").and_then(|item| item.node.as_table());
+    let only = named.filter(|named| named.len() == 1).and_then(|named| named.keys().next().cloned());
     let mut bodies = fields.or("body", Vec::new(), |item| bodies(item, only.as_deref(), frame, degree));
     let rule = (&bodies[..], frame, degree);
     let span = accuracy.and_then(|accuracy| choose_span(accuracy, &mut materials, rule, item.node));

@@ -15,8 +15,9 @@
 //! stored  E_t = Σ T g/2,     dissipated  Δ = (T(n) + T(n+1))/2 γ.
 //! ```
 //!
-//! Both together are what T takes from the motion, `(T(n) + T(n+1))/2 Δs`, exactly while w stays. Where
-//! boundaries part, the stored energy of slip is dissipated.
+//! Both together are what T takes from the motion, `(T(n) + T(n+1))/2 Δs`, exactly while w stays. A place that
+//! comes into contact has g(n) = T(n) = 0, and one that parts g(n+1) = T(n+1) = 0. Their step counts: contact
+//! that lasts for few steps would have much less friction without it.
 //!
 //! The pair ±T acts at one place for both bodies, y on the boundary of b, so that it has no moment: on a as a
 //! force at x and a couple. There the material of a moves as its boundary at x does, turned with that:
@@ -27,37 +28,30 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::arc::{Arc, BoundaryPlace, Closest};
+use super::arc::Outline;
 use crate::checkpoint::{Archive, StateError};
 use crate::linear_algebra::vectors::dot;
 
-/// Which Gauss point of which boundary: bodies a and b, the arc of a, the point on it.
-pub(crate) type Label = ([usize; 2], usize, usize);
-
 /// A Gauss point of a boundary that is inside another body.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct ContactPoint<'a> {
-    pub label: Label,
-    /// On the boundary of a.
-    pub place: BoundaryPlace,
-    /// On the boundary of b.
-    pub nearest: Closest,
-    /// Arcs of b.
-    pub arcs: &'a [Arc],
-    /// κ/2 w, N/m².
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(crate) struct ContactPoint {
+    /// Bodies a and b.
+    pub bodies: [usize; 2],
+    /// Its number on the arc of a.
+    pub number: usize,
+    /// Arc and t on it: of itself on a, and of the nearest place on b.
+    pub labels: [(usize, f64); 2],
+    /// Unit vector along the boundary of b.
+    pub tangent: [f64; 2],
+    /// Depth, m, and κ/2 w, N/m².
+    pub depth: f64,
     pub stiffness: f64,
 }
 
 /// History variables of a Gauss point in contact.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct History {
-    label: Label,
-    /// Place and outward normal on a, m.
-    place: [f64; 2],
-    normal: [f64; 2],
-    /// The place opposite by its label on b, and where that was, m.
-    opposite: (usize, f64),
-    position: [f64; 2],
+    point: ContactPoint,
     /// Elastic slip, m, and its force, N/m.
     slip: f64,
     force: f64,
@@ -67,7 +61,9 @@ struct History {
 #[derive(Debug, Clone)]
 pub(crate) struct Friction {
     coefficient: f64,
-    /// In the order of their labels: of the last step, and of this one so far.
+    /// Boundaries of all bodies when contact was found last, if it was.
+    before: Vec<Outline>,
+    /// In the order of their keys: of the last step, and of this one so far.
     histories: Vec<History>,
     found: Vec<History>,
     pub stored: f64,
@@ -77,43 +73,26 @@ pub(crate) struct Friction {
 impl Friction {
     /// None between bodies that do not touch; `None` for a coefficient of zero.
     pub(crate) fn new(coefficient: f64) -> Option<Self> {
-        let (histories, found) = (Vec::new(), Vec::new());
-        (coefficient > 0.0).then_some(Self { coefficient, histories, found, stored: 0.0, dissipated: 0.0 })
+        let (before, histories, found) = (Vec::new(), Vec::new(), Vec::new());
+        (coefficient > 0.0).then_some(Self { coefficient, before, histories, found, stored: 0.0, dissipated: 0.0 })
     }
 
-    /// Force on b at a Gauss point, N/m. They come in the order of their labels. Asked again at the same
-    /// positions, it is the same bit by bit.
-    pub(crate) fn force(&mut self, point: &ContactPoint<'_>) -> [f64; 2] {
-        let ContactPoint { label, place, nearest, arcs, stiffness } = *point;
-        let tangent = [-nearest.direction[1], nearest.direction[0]];
-        let limit = self.coefficient * nearest.distance;
-        let before =
-            self.histories.binary_search_by(|history| history.label.cmp(&label)).ok().map(|at| self.histories[at]);
-        let (slip, force) = match before {
-            // What it slid by since it closed is not known: that counts from here.
-            None => (0.0, 0.0),
-            Some(history) => {
-                let moved = dot(history.motion(point), tangent);
-                let trial = history.slip + moved;
-                let slip = trial.clamp(-limit, limit);
-                let force = stiffness * slip;
-                let kept = fault!("slip-not-returned", slip => trial);
-                self.dissipated += 0.5 * (history.force + force) * (moved - (kept - history.slip));
-                (kept, force)
-            }
-        };
+    /// Force on b at a Gauss point, N/m, with the boundaries now. They come in the order of their keys. Asked
+    /// again at the same positions, it is the same bit by bit.
+    pub(crate) fn force(&mut self, point: ContactPoint, now: &[Outline]) -> [f64; 2] {
+        let limit = self.coefficient * point.depth;
+        let known = self.histories.binary_search_by(|history| history.point.key().cmp(&point.key()));
+        let [slip_before, force_before] =
+            known.map_or([0.0; 2], |at| [self.histories[at].slip, self.histories[at].force]);
+        let moved = point.slide(&self.before, now);
+        let trial = slip_before + moved;
+        let slip = trial.clamp(-limit, limit);
+        let force = point.stiffness * slip;
+        let slip = fault!("slip-not-returned", slip => trial);
+        self.dissipated += 0.5 * (force_before + force) * (moved - (slip - slip_before));
         self.stored += 0.5 * force * slip;
-        let (arc, t) = nearest.label;
-        self.found.push(History {
-            label,
-            place: place.position,
-            normal: place.normal,
-            opposite: nearest.label,
-            position: arcs[arc].position(t),
-            slip,
-            force,
-        });
-        tangent.map(|tangent| force * tangent)
+        self.found.push(History { point, slip, force });
+        point.tangent.map(|tangent| force * tangent)
     }
 
     /// Begins to collect the contact points of a step.
@@ -122,12 +101,16 @@ impl Friction {
         self.stored = 0.0;
     }
 
-    /// Dissipates the stored energy of slip where boundaries have parted.
-    pub(crate) fn end(&mut self) {
-        let Self { histories, found, dissipated, .. } = self;
-        let parted = |history: &&History| found.binary_search_by(|other| other.label.cmp(&history.label)).is_err();
-        *dissipated += histories.iter().filter(parted).map(|history| 0.5 * history.force * history.slip).sum::<f64>();
+    /// Dissipates the elastic slip of places that parted; the boundaries now are those before the next step.
+    pub(crate) fn end(&mut self, now: Vec<Outline>) {
+        let Self { before, histories, found, dissipated, .. } = self;
+        for History { point, slip, force } in &*histories {
+            if found.binary_search_by(|other| other.point.key().cmp(&point.key())).is_err() {
+                *dissipated += 0.5 * force * (slip + point.slide(before, &now));
+            }
+        }
         std::mem::swap(histories, found);
+        *before = now;
     }
 
     /// Stores or takes up what steps change.
@@ -140,39 +123,62 @@ impl Friction {
     }
 }
 
-impl History {
-    /// How the material of a moved past that of b since then, where b is now, m.
-    fn motion(&self, point: &ContactPoint<'_>) -> [f64; 2] {
-        let ContactPoint { place, nearest, arcs, .. } = *point;
-        let turn = self.normal[0] * place.normal[1] - self.normal[1] * place.normal[0];
-        let arm = [0, 1].map(|d| nearest.position[d] - place.position[d]);
-        let turned = [-turn * arm[1], turn * arm[0]];
-        let (arc, t) = self.opposite;
-        let opposite = arcs[arc].position(t);
-        [0, 1].map(|d| place.position[d] - self.place[d] + turned[d] - (opposite[d] - self.position[d]))
+impl ContactPoint {
+    /// Which Gauss point of which boundary it is.
+    fn key(&self) -> ([usize; 2], usize, usize) {
+        (self.bodies, self.labels[0].0, self.number)
+    }
+
+    /// How far the material of a moved along that of b between two times, m.
+    fn slide(&self, before: &[Outline], now: &[Outline]) -> f64 {
+        if before.is_empty() {
+            return 0.0;
+        }
+        let [[x, normal], [y, _]] = self.places(before);
+        let [[x_now, normal_now], [y_now, _]] = self.places(now);
+        let turn = normal[0] * normal_now[1] - normal[1] * normal_now[0];
+        let turned = [-turn * (y_now[1] - x_now[1]), turn * (y_now[0] - x_now[0])];
+        dot([0, 1].map(|d| x_now[d] - x[d] + turned[d] - (y_now[d] - y[d])), self.tangent)
+    }
+
+    /// Position, m, and outward unit normal of its material on both bodies.
+    fn places(&self, outlines: &[Outline]) -> [[[f64; 2]; 2]; 2] {
+        [0, 1].map(|side| {
+            let (arc, t) = self.labels[side];
+            let arc = &outlines[self.bodies[side]].arcs[arc];
+            [arc.position(t), arc.normal(t)]
+        })
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::arc::{Outline, nearest, rule};
+    use super::super::arc::{Arc, nearest, rule};
     use super::*;
 
     const DEPTH: f64 = 1e-3;
     const STIFFNESS: f64 = 5.0;
 
-    /// A block, of which one place is looked at, 1e-3 m deep in a floor; both may move along it.
+    /// A block, of which one place is looked at, a depth (m) in a floor; both may move along it.
     fn look(friction: &mut Friction, block: f64, floor: f64, depth: f64) -> f64 {
-        let arcs = [Arc::new([[1.0 + floor, 0.0], [-1.0 + floor, 0.0]], [[-2.0, 0.0]; 2], &rule())];
-        let place = BoundaryPlace { position: [block, -depth], normal: [0.0, -1.0], length: 0.1 };
+        let line = |ends: [[f64; 2]; 2]| {
+            let tangent = [0, 1].map(|d| ends[1][d] - ends[0][d]);
+            Outline::new(vec![Arc::new(ends, [tangent; 2], &rule())], 1.0)
+        };
+        let of_block = line([[block - 0.5, -depth], [block + 0.5, -depth]]);
+        let now = [of_block, line([[1.0 + floor, 0.0], [-1.0 + floor, 0.0]])];
         friction.begin();
-        let nearest = nearest(place.position, &Outline::new(arcs.to_vec(), 1.0), 0..1, |_| true).unwrap();
-        let label = ([0, 1], 3, 2);
-        let point = ContactPoint { label, place, nearest, arcs: &arcs, stiffness: STIFFNESS };
-        let [x, y] = if depth > 0.0 { friction.force(&point) } else { [0.0; 2] };
-        friction.end();
-        assert!(y.abs() < 1e-15, "{y}");
-        x
+        let mut force = [0.0; 2];
+        if depth > 0.0 {
+            let nearest = nearest([block, -depth], &now[1], 0..1, |_| true).unwrap();
+            let tangent = [-nearest.direction[1], nearest.direction[0]];
+            let labels = [(0, 0.5), nearest.label];
+            let point = ContactPoint { bodies: [0, 1], number: 2, labels, tangent, depth, stiffness: STIFFNESS };
+            force = friction.force(point, &now);
+        }
+        friction.end(now.to_vec());
+        assert!(force[1].abs() < 1e-15, "{force:?}");
+        force[0]
     }
 
     #[test]
