@@ -105,6 +105,7 @@
 //!         transfer: Transfer::default(),
 //!         mass: Mass::Lumped,
 //!         gravity: [0.0, 0.0],
+//!         gravity_time: TimeFactor::default(),
 //!     },
 //!     solver: SolverSettings {
 //!         phase_field_tolerance: 1e-8,

@@ -133,6 +133,8 @@ pub struct Analysis {
     pub mass: Mass,
     /// Gravity, m/s².
     pub gravity: [f64; 2],
+    /// Its factor over time.
+    pub gravity_time: TimeFactor,
 }
 
 /// Solver of the phase-field system.

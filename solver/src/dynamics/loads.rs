@@ -15,7 +15,7 @@ use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::vectors::cofactor;
 use crate::particles::follower::nearest_span;
 use crate::particles::lattice::Lattice;
-use crate::scene::{Body, Edge, Kinematics, Load, Shape, Side, TimeFactor, Traction};
+use crate::scene::{Analysis, Body, Edge, Kinematics, Load, Shape, Side, TimeFactor, Traction};
 use crate::splines::nurbs::locate::Location;
 use crate::splines::patch::{BoundaryPoint, Patch, PointFunctions};
 use crate::splines::quadrature::Rule;
@@ -169,6 +169,34 @@ impl KickFactor {
     pub fn at(&self, time: f64) -> f64 {
         let half = 0.5 * self.step;
         if half == 0.0 { self.time.value(time) } else { self.time.mean([larger(time - half, 0.0), time + half]) }
+    }
+}
+
+/// Gravity that may vary over time.
+#[derive(Debug, Clone)]
+pub(crate) struct Gravity {
+    /// At full strength, m/s².
+    full: [f64; 2],
+    /// Its factor.
+    pub factor: KickFactor,
+}
+
+impl Gravity {
+    /// That of a scene.
+    pub(crate) fn new(analysis: &Analysis) -> Self {
+        Self { full: analysis.gravity, factor: KickFactor::new(analysis.gravity_time.clone()) }
+    }
+
+    /// At a time (s), m/s².
+    pub(crate) fn at(&self, time: f64) -> [f64; 2] {
+        let factor = self.factor.at(time);
+        self.full.map(|full| factor * full)
+    }
+
+    /// Mean of the weights at both ends of a step of `dt` seconds that ends at a time (s), m/s².
+    pub(crate) fn mean(&self, time: f64, dt: f64) -> [f64; 2] {
+        let factor = 0.5 * (self.factor.at(time - dt) + self.factor.at(time));
+        self.full.map(|full| factor * full)
     }
 }
 

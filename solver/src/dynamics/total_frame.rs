@@ -22,7 +22,7 @@ pub(crate) mod stiffness;
 
 use crate::dynamics::constraints::Constraints;
 use crate::dynamics::energy::Ledger;
-use crate::dynamics::loads::NodalLoad;
+use crate::dynamics::loads::{Gravity, NodalLoad};
 use crate::dynamics::mass::MassMatrix;
 use crate::linear_algebra::active_columns::ActiveColumns;
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
@@ -59,7 +59,7 @@ pub struct TotalFrame {
     kinematics: Kinematics,
     shape: Shape,
     thickness: f64,
-    gravity: [f64; 2],
+    gravity: Gravity,
     loads: Vec<NodalLoad>,
     /// Loads that vary in space, if there are any.
     forced: Option<Box<LatticeForcing>>,
@@ -250,6 +250,7 @@ impl TotalFrame {
     fn expect_steps(&mut self, dt: f64) {
         self.time_step = dt;
         self.loads.iter_mut().for_each(|load| load.factor.prepare(dt));
+        self.gravity.factor.prepare(dt);
     }
 
     /// Kinetic and elastic energy, and energy of the crack, J/m.
@@ -276,8 +277,9 @@ impl TotalFrame {
     /// `f_ext − f_int` in the room of the acceleration.
     fn external_minus_internal(&mut self) {
         let mass = &self.mass.row_sums;
-        for (component, (a, f)) in self.acceleration.iter_mut().zip(&self.internal).enumerate() {
-            let gravity = fault!("gravity-upwards", self.gravity[component] => -self.gravity[component]);
+        let gravity = self.gravity.at(self.time);
+        for ((a, f), gravity) in self.acceleration.iter_mut().zip(&self.internal).zip(gravity) {
+            let gravity = fault!("gravity-upwards", gravity => -gravity);
             self.in_use.for_each_part(self.grid, [a], |used, [a]| {
                 let forces = f[used.clone()].iter().zip(&mass[used]);
                 a.iter_mut().zip(forces).for_each(|(a, (f, m))| *a = gravity * m - f);
@@ -304,7 +306,7 @@ impl TotalFrame {
             let before = fault!("work-of-the-last-force", load.factor.at(self.time - dt) => load.factor.at(self.time));
             power += 0.5 * load.power([before, load.factor.at(self.time)], velocity);
         }
-        for (component, gravity) in self.gravity.into_iter().enumerate().filter(|(_, g)| *g != 0.0) {
+        for (component, gravity) in self.gravity.mean(self.time, dt).into_iter().enumerate().filter(|(_, g)| *g != 0.0) {
             power += gravity * self.mass.row_sums.iter().zip(&velocity[component]).map(|(m, v)| m * v).sum::<f64>();
         }
         if let Some(forced) = &self.forced {

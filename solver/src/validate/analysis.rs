@@ -2,7 +2,7 @@
 
 use super::ground::{Findings, Ground, TOLERANCE};
 use super::material::plausible_speed;
-use super::output;
+use super::{output, tractions};
 use crate::linear_algebra::extremes::larger;
 use crate::scene::{Body, Contact, Frame, Mass, PhaseFieldInterval, Scene, Shape, TimeStep, Transfer};
 use crate::splines::quadrature::Rule;
@@ -46,6 +46,10 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
         findings.error("analysis.safety", message, "give a number above 0 and at most 1, such as 0.8");
     }
     findings.finite("analysis.gravity", &analysis.gravity);
+    tractions::factor("analysis.gravity_time", &analysis.gravity_time, analysis.end_time, findings);
+    if analysis.gravity == [0.0; 2] && !analysis.gravity_time.is_constant() {
+        findings.warn("analysis.gravity_time", "a factor of gravity, which is zero; add gravity, or remove the key");
+    }
     if analysis.frame == Frame::Total && ![Transfer::Apic, Transfer::Flip].contains(&analysis.transfer) {
         let message = "has no effect with frame = \"total\", where the grid keeps its velocity; remove it, or use \
                        frame = \"updated\"";

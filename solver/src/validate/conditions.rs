@@ -43,7 +43,7 @@ fn word(prescribed: &Prescribed) -> &'static str {
 fn motion(key: &str, prescribed: &Prescribed, fix: [bool; 2], scene: &Scene, findings: &mut Findings) {
     let (word, value) = (word(prescribed), prescribed.value());
     findings.finite(format!("{key}.{word}"), &value);
-    tractions::time(key, &prescribed.time, scene.analysis.end_time, findings);
+    tractions::factor(&format!("{key}.time"), &prescribed.time, scene.analysis.end_time, findings);
     without_jump(key, prescribed, fix, scene.equilibrium, findings);
     for d in (0..2).filter(|&d| !fix[d] && value[d] != 0.0) {
         let name = ["x", "y"][d];

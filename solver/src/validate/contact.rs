@@ -83,7 +83,7 @@ fn in_the_total_frame(scene: &Scene, findings: &mut Findings) {
     }
     if scene.equilibrium {
         let message = "several bodies, and contact, cannot start from an equilibrium";
-        findings.error("start.equilibrium", message, "remove it, and let gravity or loads grow over time");
+        findings.error("start.equilibrium", message, "remove it, and let loads grow over time, gravity by analysis.gravity_time");
     }
     if scene.contact.as_ref().is_some_and(|contact| contact.fragments) {
         findings.error("contact.fragments", "bodies fall into fragments in the updated frame only", updated);
@@ -134,7 +134,7 @@ fn rigid(key: &str, body: &Body, scene: &Scene, findings: &mut Findings) {
         );
         findings.warn(format!("{key}.shape"), message);
     }
-    tractions::time(key, &body.time, scene.analysis.end_time, findings);
+    tractions::factor(&format!("{key}.time"), &body.time, scene.analysis.end_time, findings);
 }
 
 /// Bodies that overlap at t = 0: contact would have to push them apart, and that energy comes from nowhere.

@@ -24,7 +24,7 @@ pub(super) fn check(key: &str, traction: &Traction, look: &Look<'_>, findings: &
         Load::Pressure(pressure) => drop(findings.finite(format!("{key}.pressure"), &[*pressure])),
         Load::Field(_) => {} // whether it is finite where it acts is seen when the run begins
     }
-    time(key, &traction.time, look.end_time, findings);
+    factor(&format!("{key}.time"), &traction.time, look.end_time, findings);
     if traction.time.range(look.end_time) == [0.0; 2] && traction.time.integral(look.end_time) == 0.0 {
         findings.warn(format!("{key}.time"), "the factor is zero until end_time: this load never acts");
     }
@@ -111,28 +111,28 @@ fn on_boundary(key: String, form: &str, edge: &Edge, needs_side: bool, look: &Lo
     }
 }
 
-/// Checks the factor of the load or condition at `key` over the simulated time, `end` seconds.
-pub(super) fn time(key: &str, factor: &TimeFactor, end: f64, findings: &mut Findings) {
+/// Checks the factor at `key` of a load or a condition over the simulated time, `end` seconds.
+pub(super) fn factor(key: &str, factor: &TimeFactor, end: f64, findings: &mut Findings) {
     match &factor.course {
         Course::Constant => {}
         Course::Ramp(rise) => {
             let like = "\"1 us\", or leave it out for the full value from t = 0";
-            findings.positive(format!("{key}.time.ramp"), *rise, like);
+            findings.positive(format!("{key}.ramp"), *rise, like);
         }
         Course::Smooth(rise) => {
-            findings.positive(format!("{key}.time.smooth"), *rise, "\"1 us\"");
+            findings.positive(format!("{key}.smooth"), *rise, "\"1 us\"");
         }
-        Course::Table(rows) => table(&format!("{key}.time"), rows, findings), // of the scene, or of a file
+        Course::Table(rows) => table(key, rows, findings), // of the scene, or of a file
         Course::Formula(formula) => {
             let times = (0..=LOOKS).map(|i| end * i as f64 / LOOKS as f64);
             if let Some(time) = times.clone().find(|&time| !factor.value(time).is_finite()) {
                 let message = format!("{:?} is not finite at t = {time:e} s", formula.text());
-                findings.error(format!("{key}.time.formula"), message, "give a formula that is finite from t = 0 on");
+                findings.error(format!("{key}.formula"), message, "give a formula that is finite from t = 0 on");
             }
         }
     }
     if let Some(until) = factor.until {
-        findings.positive(format!("{key}.time.until"), until, "\"5 us\", or leave it out");
+        findings.positive(format!("{key}.until"), until, "\"5 us\", or leave it out");
     }
 }
 

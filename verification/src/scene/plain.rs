@@ -3,7 +3,7 @@
 
 use fisura::scene::{
     Analysis, Body, Boundary, Frame, Kinematics, Layout, Mass, Material, Mesh, Output, PhaseFieldInterval,
-    PhaseFieldSolver, Plane, Scene, Shape, Side, SolverSettings, TimeStep, Transfer,
+    PhaseFieldSolver, Plane, Scene, Shape, Side, SolverSettings, TimeFactor, TimeStep, Transfer,
 };
 
 /// What differs from study to study.
@@ -75,6 +75,7 @@ impl PlainScene {
                 transfer: Transfer::default(),
                 mass: self.mass,
                 gravity: [0.0; 2],
+                gravity_time: TimeFactor::default(),
             },
             solver: SolverSettings {
                 phase_field_tolerance: 1e-14,

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use fisura::scene::{
     Analysis, Contact, Frame, JIntegral, Kinematics, Mass, Output, PhaseFieldInterval, PhaseFieldSolver, Plane, Probe,
-    Scene, Shape, SolverSettings, TimeStep, Transfer,
+    Scene, Shape, SolverSettings, TimeFactor, TimeStep, Transfer,
 };
 
 use super::accuracy::{accuracy, choose_settings, choose_span};
@@ -13,6 +13,7 @@ use super::diagnostic::Problem;
 use super::document::Node;
 use super::fields::{Fields, Item, Problems};
 use super::read_body::{bodies, materials};
+use super::read_function::factor;
 use super::read_load::boundary;
 use super::read_mesh::{degree, mesh};
 use super::units::Dimension;
@@ -125,6 +126,7 @@ fn analysis(item: &Item<'_>) -> Option<Analysis> {
             transfer: fields.or("transfer", Transfer::default(), transfer),
             mass: fields.or("mass", Mass::Lumped, Item::word),
             gravity: fields.or("gravity", [0.0, 0.0], |item| item.vector(Dimension::ACCELERATION)),
+            gravity_time: fields.or("gravity_time", TimeFactor::default(), factor),
             end_time: end_time?,
         })
     })

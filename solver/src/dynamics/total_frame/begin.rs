@@ -13,7 +13,7 @@ use crate::dynamics::constraints::Constraints;
 use crate::dynamics::energy::Ledger;
 use crate::dynamics::failure::Failure;
 use crate::dynamics::forcing::Forcing;
-use crate::dynamics::loads::NodalLoad;
+use crate::dynamics::loads::{Gravity, NodalLoad};
 use crate::dynamics::mass::MassMatrix;
 use crate::linear_algebra::active_columns::ActiveColumns;
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
@@ -86,7 +86,7 @@ impl TotalFrame {
             kinematics: scene.analysis.kinematics,
             shape: body.shape.clone(),
             thickness: scene.analysis.thickness,
-            gravity: scene.analysis.gravity,
+            gravity: Gravity::new(&scene.analysis),
             strip_forces: StripForces::new(&lattice),
             probes,
             domains: Domain::all(&patch, body, &scene.output.j_integrals),

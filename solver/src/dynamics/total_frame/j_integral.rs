@@ -72,7 +72,7 @@ impl TotalFrame {
                 let (width, s) = (radius - plateau, (distance - plateau) / (radius - plateau));
                 (1.0 - s * s * (3.0 - 2.0 * s), from_tip.map(|x| -6.0 * s * (1.0 - s) * x / (distance * width)))
             };
-            let [gx, gy] = self.gravity;
+            let [gx, gy] = self.gravity.at(self.time);
             let [mut x, mut y] = acceleration.each_ref().map(|a| functions.interpolate(a).value);
             (x, y) = (x - gx, y - gy);
             let inertia = density

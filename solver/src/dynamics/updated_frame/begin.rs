@@ -17,7 +17,7 @@ use crate::checkpoint::{Archive, StateError};
 use crate::contact::Surface;
 use crate::dynamics::energy::Ledger;
 use crate::dynamics::failure::Failure;
-use crate::dynamics::loads::{Balance, LostTraction};
+use crate::dynamics::loads::{Balance, Gravity, LostTraction};
 use crate::material::degradation::FractureModel;
 use crate::material::elasticity::ElasticModuli;
 use crate::particles::lattice::build::moving_points;
@@ -103,7 +103,7 @@ impl DiscreteField {
             thickening: thickening(material, analysis.plane),
             density: material.density,
             thickness: analysis.thickness,
-            gravity: analysis.gravity,
+            gravity: Gravity::new(analysis),
             crack_start: crack_start(body),
             elastic_energy: 0.0,
             stress_work: 0.0,

@@ -5,6 +5,7 @@ use super::field::DiscreteField;
 use super::grid::{EndOfStep, ImposedEnergy};
 use super::held_sides::constraints;
 use crate::dynamics::failure::Failure;
+use crate::linear_algebra::vectors::dot;
 
 impl DiscreteField {
     /// Lets the sides hold the control points that their material reaches now.
@@ -36,6 +37,7 @@ impl DiscreteField {
     /// A load or a condition that has lost its material.
     pub(super) fn prepare(&mut self, dt: f64) -> Result<(), Failure> {
         self.loads.iter_mut().for_each(|load| load.factor.prepare(dt));
+        self.gravity.factor.prepare(dt);
         if self.at_start && !self.loads.is_empty() {
             self.rebuild_grid()?;
         }
@@ -66,7 +68,7 @@ impl DiscreteField {
 
     /// Books the works and losses of the step that ends now.
     pub(super) fn book(&mut self, dt: f64, end_of_step: &EndOfStep, imposed: ImposedEnergy) {
-        let weight = self.gravity[0] * end_of_step.momentum[0] + self.gravity[1] * end_of_step.momentum[1];
+        let weight = dot(self.gravity.mean(self.time, dt), end_of_step.momentum);
         let powers = self.loads.iter().map(|load| load.powers(self.time, dt));
         let [before, now] = powers.fold([0.0; 2], |[a, b], [before, now]| [a + before, b + now]);
         let [forced_before, forced_now] = self.forcing.as_ref().map_or([0.0; 2], |forcing| forcing.powers);

@@ -12,6 +12,7 @@ use super::grid::{EndOfStep, NodalFields};
 use super::held_edges::HeldEdges;
 use super::held_sides::HeldSide;
 use super::loads::{PointForcing, SurfaceLoad};
+use crate::dynamics::loads::Gravity;
 use super::losses::TransferLosses;
 use super::pointwise_fracture::PointwiseFracture;
 use super::strain::{FiniteStrain, SmallStrain, StrainUpdate};
@@ -47,7 +48,7 @@ pub struct DiscreteField {
     pub(super) thickening: f64,
     pub(super) density: f64,
     pub(super) thickness: f64,
-    pub(super) gravity: [f64; 2],
+    pub(super) gravity: Gravity,
     /// Material points, sorted by span.
     pub points: Vec<Point>,
     /// Order of the points.
@@ -311,7 +312,7 @@ impl DiscreteField {
     pub(super) fn add_external_forces(&mut self) {
         let Self { patch, cells, points, nodes, .. } = self;
         let grid = nodes.grid;
-        nodes.add_gravity(self.gravity);
+        nodes.add_gravity(self.gravity.at(self.time));
         for load in &self.loads {
             load.add_forces(patch, grid, self.time, &mut nodes.force);
         }

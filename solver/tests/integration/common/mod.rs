@@ -75,6 +75,7 @@ pub fn elastic_scene(degree: usize, size: [f64; 2], cells: [usize; 2]) -> Scene 
             transfer: Transfer::default(),
             mass: Mass::Lumped,
             gravity: [0.0; 2],
+            gravity_time: TimeFactor::default(),
         },
         solver: SolverSettings {
             phase_field_tolerance: 1e-10,
