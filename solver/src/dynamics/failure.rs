@@ -64,10 +64,9 @@ pub enum Failure {
     /// No static state was found: the largest force out of balance, of the largest nodal force.
     #[error("no static state was found: {}", out_of_balance(*.0))]
     NoEquilibrium(f64),
-    /// The loads of a static start accelerate a body that nothing holds: their resultant, of their
-    /// magnitudes.
-    #[error("the loads at t = 0 have a resultant of {0:.1e} of their size, and nothing holds the body")]
-    Unbalanced(f64),
+    /// The loads of a static start accelerate a body that nothing holds: what they do to it.
+    #[error("the body is not in balance: the loads at t = 0 {0}, and nothing holds it")]
+    Unbalanced(&'static str),
     /// Impulses of contact did not converge.
     #[error(transparent)]
     Unconverged(#[from] Unconverged),

@@ -187,6 +187,11 @@ impl Gravity {
         Self { full: analysis.gravity, factor: KickFactor::new(analysis.gravity_time.clone()) }
     }
 
+    /// Whether it changes over time.
+    pub(crate) fn varies(&self) -> bool {
+        !self.factor.time.is_constant()
+    }
+
     /// At a time (s), m/s².
     pub(crate) fn at(&self, time: f64) -> [f64; 2] {
         let factor = self.factor.at(time);

@@ -306,7 +306,8 @@ impl TotalFrame {
             let before = fault!("work-of-the-last-force", load.factor.at(self.time - dt) => load.factor.at(self.time));
             power += 0.5 * load.power([before, load.factor.at(self.time)], velocity);
         }
-        for (component, gravity) in self.gravity.mean(self.time, dt).into_iter().enumerate().filter(|(_, g)| *g != 0.0) {
+        for (component, gravity) in self.gravity.mean(self.time, dt).into_iter().enumerate().filter(|(_, g)| *g != 0.0)
+        {
             power += gravity * self.mass.row_sums.iter().zip(&velocity[component]).map(|(m, v)| m * v).sum::<f64>();
         }
         if let Some(forced) = &self.forced {

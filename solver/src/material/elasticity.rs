@@ -46,7 +46,7 @@ impl ElasticModuli {
         ((self.lambda + 2.0 * self.mu) / density).sqrt()
     }
 
-    /// Speed of surface waves at density (kg/m³), m/s, within 0.5 % (Viktorov 1967, *Rayleigh and Lamb waves*).
+    /// Speed of surface waves at density (kg/m³), m/s, to 0.5 % (Viktorov 1967, *Rayleigh and Lamb waves*).
     pub fn rayleigh_speed(&self, density: f64) -> f64 {
         let nu = 0.5 * self.lambda / (self.lambda + self.mu);
         (0.87 + 1.12 * nu) / (1.0 + nu) * (self.mu / density).sqrt()

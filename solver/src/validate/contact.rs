@@ -83,7 +83,11 @@ fn in_the_total_frame(scene: &Scene, findings: &mut Findings) {
     }
     if scene.equilibrium {
         let message = "several bodies, and contact, cannot start from an equilibrium";
-        findings.error("start.equilibrium", message, "remove it, and let loads grow over time, gravity by analysis.gravity_time");
+        findings.error(
+            "start.equilibrium",
+            message,
+            "remove it, and let loads grow over time, gravity by analysis.gravity_time",
+        );
     }
     if scene.contact.as_ref().is_some_and(|contact| contact.fragments) {
         findings.error("contact.fragments", "bodies fall into fragments in the updated frame only", updated);

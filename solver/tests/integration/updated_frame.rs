@@ -69,6 +69,25 @@ fn free_fall_is_exact() {
     assert!((end.external_work - work).abs() <= 1e-11 * work && end.closure.abs() <= 1e-11 * work, "{end:?}");
 }
 
+/// Gravity that rises within a time r gives m g (t − r/2), and its work is the kinetic energy of the fall.
+#[test]
+fn gravity_that_grows_gives_its_impulse_in_both_frames() {
+    let (gravity, rise) = ([2e6, -5e6], 7e-6);
+    for frame in [Frame::Updated, Frame::Total] {
+        let mut scene = scene(2, 16, [0.0021, 0.0047], [0.0058, 0.0093]);
+        let course = TimeFactor::ramp(rise);
+        scene.analysis = Analysis { frame, gravity, gravity_time: course, end_time: 30e-6, ..scene.analysis };
+        let (_, samples) = run(&scene);
+        let end = samples.last().unwrap();
+        for d in 0..2 {
+            let momentum = DENSITY * 0.0037 * 0.0046 * gravity[d] * (end.time - 0.5 * rise);
+            approx::assert_relative_eq!(end.momentum[d], momentum, max_relative = 1e-11);
+        }
+        approx::assert_relative_eq!(end.external_work, end.kinetic, max_relative = 1e-4);
+        assert!(end.closure.abs() <= 1e-11 * end.kinetic, "{end:?}");
+    }
+}
+
 #[test]
 fn momentum_is_kept_to_round_off_and_angular_momentum_by_every_grid() {
     let mut scene = scene(2, 20, [0.00213, 0.0031], [0.0068, 0.0073]);

@@ -15,9 +15,9 @@
 //! stored  E_t = Σ T g/2,     dissipated  Δ = (T(n) + T(n+1))/2 γ.
 //! ```
 //!
-//! Both together are what T takes from the motion, `(T(n) + T(n+1))/2 Δs`, exactly while w stays. A place that
-//! comes into contact has g(n) = T(n) = 0, and one that parts g(n+1) = T(n+1) = 0. Their step counts: contact
-//! that lasts for few steps would have much less friction without it.
+//! Both together are what T takes from the motion, `(T(n) + T(n+1))/2 Δs`, exactly while w stays. A place
+//! that comes into contact has g(n) = T(n) = 0, and one that parts g(n+1) = T(n+1) = 0. Their step counts:
+//! contact that lasts for few steps would have much less friction without it.
 //!
 //! The pair ±T acts at one place for both bodies, y on the boundary of b, so that it has no moment: on a as a
 //! force at x and a couple. There the material of a moves as its boundary at x does, turned with that:
@@ -118,6 +118,9 @@ impl Friction {
     /// # Errors
     /// Bytes of another scene.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
+        if archive.is_reader() {
+            self.before.clear(); // contact is found again where it was found last
+        }
         archive.value(&mut self.histories)?;
         archive.value(&mut self.dissipated)
     }

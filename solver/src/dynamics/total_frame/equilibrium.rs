@@ -43,9 +43,9 @@ impl TotalFrame {
         let free = self.free_components();
         let (mut residual, mut scale) = self.out_of_balance(&free);
         let least = ROUND_OFF * scale;
-        let motions = self.free_motions(&free);
+        let (directions, motions): (Vec<_>, Vec<_>) = self.free_motions(&free).into_iter().unzip();
         let balanced = if self.patch.geometry.is_some() { BALANCED_ON_CURVES } else { BALANCED };
-        refuse_unbalanced(&motions, &residual, balanced)?;
+        refuse_unbalanced(&directions, &motions, &residual, balanced)?;
         self.balance(&free, &motions, &mut residual);
         for _ in 0..MOST_STEPS {
             if largest(residual.iter().map(|r| r.abs())) <= larger(TOLERANCE * scale, least) {
@@ -97,25 +97,25 @@ impl TotalFrame {
         (residual, largest(inner.chain(outer.map(|(net, f)| (net + f).abs()))))
     }
 
-    /// Rigid motions that no condition holds, at the free components.
-    fn free_motions(&self, free: &[(usize, usize)]) -> Vec<Vec<f64>> {
+    /// Rigid motions that no condition holds, in words and at the free components.
+    fn free_motions(&self, free: &[(usize, usize)]) -> Vec<(&'static str, Vec<f64>)> {
         let [x, y] = self.control_positions();
         let held: Vec<_> = self.constraints.iter().map(|(at, component, _)| (at, component)).collect();
         let mass = &self.mass.row_sums;
         let total: f64 = mass.iter().sum();
         let center = [&x, &y].map(|x| mass.iter().zip(x).map(|(m, x)| m * x).sum::<f64>() / total);
         let turning = |at: usize, component: usize| [center[1] - y[at], x[at] - center[0]][component];
-        let modes: [&dyn Fn(usize, usize) -> f64; 3] = [
-            &|_, component| if component == 0 { 1.0 } else { 0.0 },
-            &|_, component| if component == 1 { 1.0 } else { 0.0 },
-            &turning,
+        let modes: [(&str, &dyn Fn(usize, usize) -> f64); 3] = [
+            ("move it along x", &|_, component| if component == 0 { 1.0 } else { 0.0 }),
+            ("move it along y", &|_, component| if component == 1 { 1.0 } else { 0.0 }),
+            ("turn it", &turning),
         ];
-        let is_free = |mode: &&dyn Fn(usize, usize) -> f64| {
+        let is_free = |(_, mode): &(&str, &dyn Fn(usize, usize) -> f64)| {
             let by_sides = held.iter().any(|&(at, component)| mode(at, component) != 0.0);
             !by_sides && !self.edges.as_ref().is_some_and(|edges| edges.restrain(mode))
         };
         let values = |mode: &dyn Fn(usize, usize) -> f64| free.iter().map(|&(at, d)| mode(at, d)).collect();
-        modes.into_iter().filter(is_free).map(values).collect()
+        modes.into_iter().filter(is_free).map(|(direction, mode)| (direction, values(mode))).collect()
     }
 
     /// Takes the forces away that would accelerate these motions.
@@ -166,12 +166,17 @@ impl TotalFrame {
 }
 
 /// Refuses forces along rigid motions that no condition holds, beyond a part of the sum of their magnitudes.
-fn refuse_unbalanced(motions: &[Vec<f64>], residual: &[f64], balanced: f64) -> Result<(), Failure> {
-    for motion in motions {
+fn refuse_unbalanced(
+    directions: &[&'static str],
+    motions: &[Vec<f64>],
+    residual: &[f64],
+    balanced: f64,
+) -> Result<(), Failure> {
+    for (direction, motion) in directions.iter().zip(motions) {
         let works = || motion.iter().zip(residual).map(|(v, r)| v * r);
         let (sum, magnitude) = (works().sum::<f64>(), works().map(f64::abs).sum::<f64>());
         if sum.abs() > balanced * magnitude {
-            return Err(Failure::Unbalanced(sum.abs() / magnitude));
+            return Err(Failure::Unbalanced(direction));
         }
     }
     Ok(())

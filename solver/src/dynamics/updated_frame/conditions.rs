@@ -38,7 +38,7 @@ impl DiscreteField {
     pub(super) fn prepare(&mut self, dt: f64) -> Result<(), Failure> {
         self.loads.iter_mut().for_each(|load| load.factor.prepare(dt));
         self.gravity.factor.prepare(dt);
-        if self.at_start && !self.loads.is_empty() {
+        if self.at_start && (self.gravity.varies() || !self.loads.is_empty()) {
             self.rebuild_grid()?;
         }
         if let Some(edges) = self.edges.as_mut().filter(|_| self.at_start) {
