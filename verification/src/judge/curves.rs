@@ -201,7 +201,7 @@ fn compare(
     let mut out = row(phase, quantity);
     let (first, last) = (curve.t[0], curve.t[curve.t.len() - 1]);
     let window = [larger(from, first), if last < to { last } else { to }];
-    out.window_s = Some(window);
+    out.window_s = (window[0] < window[1]).then_some(window);
     if window[1] - window[0] < COVERED * (to - from) {
         out.outcome = Outcome::Incomplete;
         out.why = format!("the curve covers {:.1} to {:.1} µs", 1e6 * first, 1e6 * last);
