@@ -88,10 +88,10 @@ impl Friction {
         let trial = slip_before + moved;
         let slip = trial.clamp(-limit, limit);
         let force = point.stiffness * slip;
-        let slip = fault!("slip-not-returned", slip => trial);
-        self.dissipated += 0.5 * (force_before + force) * (moved - (slip - slip_before));
+        let kept = fault!("slip-not-returned", slip => trial);
+        self.dissipated += 0.5 * (force_before + force) * (moved - (kept - slip_before));
         self.stored += 0.5 * force * slip;
-        self.found.push(History { point, slip, force });
+        self.found.push(History { point, slip: kept, force });
         point.tangent.map(|tangent| force * tangent)
     }
 
