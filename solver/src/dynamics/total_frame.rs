@@ -278,8 +278,8 @@ impl TotalFrame {
     fn external_minus_internal(&mut self) {
         let mass = &self.mass.row_sums;
         let gravity = self.gravity.at(self.time);
-        for ((a, f), gravity) in self.acceleration.iter_mut().zip(&self.internal).zip(gravity) {
-            let gravity = fault!("gravity-upwards", gravity => -gravity);
+        for (component, (a, f)) in self.acceleration.iter_mut().zip(&self.internal).enumerate() {
+            let gravity = fault!("gravity-upwards", gravity[component] => -gravity[component]);
             self.in_use.for_each_part(self.grid, [a], |used, [a]| {
                 let forces = f[used.clone()].iter().zip(&mass[used]);
                 a.iter_mut().zip(forces).for_each(|(a, (f, m))| *a = gravity * m - f);
