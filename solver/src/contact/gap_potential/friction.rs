@@ -215,6 +215,17 @@ mod tests {
     }
 
     #[test]
+    fn the_steps_in_which_places_meet_and_part_count() {
+        let mut friction = Friction::new(0.4).unwrap();
+        look(&mut friction, 0.0, 0.0, -DEPTH);
+        let (limit, slid) = (0.4 * STIFFNESS * DEPTH, 5e-3);
+        assert!((look(&mut friction, slid, 0.0, DEPTH) - limit).abs() < 1e-12 * limit);
+        assert!((friction.stored + friction.dissipated - 0.5 * limit * slid).abs() < 1e-12 * limit * slid);
+        look(&mut friction, 2.0 * slid, 0.0, -DEPTH);
+        assert!((friction.dissipated - limit * slid).abs() < 1e-12 * limit * slid);
+    }
+
+    #[test]
     fn what_sticks_gives_back_what_it_took_and_a_floor_that_comes_along_feels_nothing() {
         let mut friction = Friction::new(0.4).unwrap();
         look(&mut friction, 0.0, 0.0, DEPTH);
