@@ -34,7 +34,7 @@ const BALANCED: f64 = 1e-9;
 const BALANCED_ON_CURVES: f64 = 1e-5;
 
 /// What a rigid motion does, in words, and its component at a control point.
-type RigidMotion<'a> = (&'static str, &'a dyn Fn(usize, usize) -> f64);
+type FreeMotion<'a> = (&'static str, &'a dyn Fn(usize, usize) -> f64);
 
 impl TotalFrame {
     /// Displaces the body into equilibrium.
@@ -108,12 +108,12 @@ impl TotalFrame {
         let total: f64 = mass.iter().sum();
         let center = [&x, &y].map(|x| mass.iter().zip(x).map(|(m, x)| m * x).sum::<f64>() / total);
         let turning = |at: usize, component: usize| [center[1] - y[at], x[at] - center[0]][component];
-        let modes: [RigidMotion<'_>; 3] = [
+        let modes: [FreeMotion<'_>; 3] = [
             ("move it along x", &|_, component| if component == 0 { 1.0 } else { 0.0 }),
             ("move it along y", &|_, component| if component == 1 { 1.0 } else { 0.0 }),
             ("turn it", &turning),
         ];
-        let is_free = |(_, mode): &RigidMotion<'_>| {
+        let is_free = |(_, mode): &FreeMotion<'_>| {
             let by_sides = held.iter().any(|&(at, component)| mode(at, component) != 0.0);
             !by_sides && !self.edges.as_ref().is_some_and(|edges| edges.restrain(mode))
         };

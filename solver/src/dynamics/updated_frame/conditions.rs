@@ -68,16 +68,16 @@ impl DiscreteField {
 
     /// Books the works and losses of the step that ends now.
     pub(super) fn book(&mut self, dt: f64, end_of_step: &EndOfStep, imposed: ImposedEnergy) {
-        let weight = dot(self.gravity.mean(self.time, dt), end_of_step.momentum);
+        let weights = [self.time - dt, self.time].map(|time| dot(self.gravity.at(time), end_of_step.momentum));
         let powers = self.loads.iter().map(|load| load.powers(self.time, dt));
-        let [before, now] = powers.fold([0.0; 2], |[a, b], [before, now]| [a + before, b + now]);
+        let [before, now] = powers.fold(weights, |[a, b], [before, now]| [a + before, b + now]);
         let [forced_before, forced_now] = self.forcing.as_ref().map_or([0.0; 2], |forcing| forcing.powers);
         let driven = self.edges.as_mut().map_or(0.0, |edges| edges.work(dt));
-        let on_points = now + forced_now + weight - self.stress_work / dt;
+        let on_points = now + forced_now - self.stress_work / dt;
         self.losses.kinetic += end_of_step.kinetic - self.nodes.kinetic_energy(&self.nodes.arrived);
         self.losses.power += 0.5 * dt * (end_of_step.not_followed + on_points - self.nodes.power(true));
         self.losses.imposed += fault!("loss-forgotten", imposed.loss => 0.0);
-        self.ledger.external_work += imposed.work + dt * weight + 0.5 * dt * (before + now);
+        self.ledger.external_work += imposed.work + 0.5 * dt * (before + now);
         self.ledger.external_work += driven + 0.5 * dt * (forced_before + forced_now);
         self.ledger.transfer_loss = self.losses.sum();
     }
