@@ -40,7 +40,7 @@ const MOST_RECORDS: usize = 10_000;
 pub struct Plot {
     /// File name without ending, below `timing/`.
     pub id: String,
-    /// Title.
+    /// Title above the figure.
     pub title: String,
     /// What was run.
     pub caption: String,
@@ -53,7 +53,7 @@ pub struct Plot {
 /// A table with what it says.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Grid {
-    /// Title.
+    /// Title above the table.
     pub title: String,
     /// Names of the columns.
     pub head: Vec<String>,
@@ -109,7 +109,7 @@ fn range(spread: Spread) -> String {
 /// A part of the report.
 #[derive(Debug, Clone)]
 pub struct Section {
-    /// Title.
+    /// Title of the part.
     pub title: String,
     /// What it shows, in order.
     pub exhibits: Vec<Exhibit>,

@@ -28,7 +28,7 @@ const STEPS: f64 = 1000.0;
 /// Where a figure comes from, and what it is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Bundle {
-    /// [`BUNDLE_SCHEMA`].
+    /// Name and version of the format, [`BUNDLE_SCHEMA`].
     pub schema: String,
     /// Where and when its numbers were computed.
     pub environment: Environment,

@@ -76,7 +76,7 @@ fn graded(minor: bool, major: bool, worse: bool) -> (Change, Effect) {
 pub struct Side {
     /// Value, if there is one.
     pub value: Option<f64>,
-    /// Verdict.
+    /// Status that its check gave it.
     pub status: Status,
 }
 
@@ -111,7 +111,7 @@ impl Comparison {
 /// All records, compared.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ComparedSets {
-    /// [`COMPARISON_SCHEMA`].
+    /// Name and version of the format, [`COMPARISON_SCHEMA`].
     pub schema: &'static str,
     /// Where and when the base was run.
     pub base: Environment,

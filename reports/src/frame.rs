@@ -28,9 +28,9 @@ pub struct Place {
     pub left: f64,
     /// Top side.
     pub top: f64,
-    /// Width.
+    /// Width of the rectangle.
     pub width: f64,
-    /// Height.
+    /// Height of the rectangle.
     pub height: f64,
 }
 

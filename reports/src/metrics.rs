@@ -15,9 +15,9 @@ use crate::view::{Counts, bounds, by_suite, runs, timing};
 pub struct Metric {
     /// Record or run, and what was measured.
     pub name: String,
-    /// Unit.
+    /// Unit of the value.
     pub unit: String,
-    /// Value.
+    /// The measured value.
     pub value: f64,
     /// What is accepted, in words; empty where nothing is.
     pub range: String,

@@ -12,7 +12,7 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("figure {figure}: {message}")]
 pub struct FigureError {
-    /// Figure.
+    /// Id of the figure.
     pub figure: String,
     /// Why, with the series and its column.
     pub message: String,

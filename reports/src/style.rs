@@ -17,7 +17,7 @@ pub const LABEL_SIZE: f64 = 13.0;
 pub const TICK_SIZE: f64 = 12.0;
 /// Width of a curve.
 pub const CURVE_WIDTH: f64 = 1.8;
-/// Text.
+/// Colour of text.
 pub const INK: RGBColor = RGBColor(0x26, 0x26, 0x26);
 /// Axis lines.
 pub const AXIS: RGBColor = RGBColor(0x59, 0x59, 0x59);
@@ -75,9 +75,9 @@ pub fn text(size: f64, colour: RGBColor, horizontal: HPos, vertical: VPos) -> Te
 /// Shape of a marker.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Marker {
-    /// Disc.
+    /// A filled disc.
     Circle,
-    /// Square.
+    /// A square with sides along the axes.
     Square,
     /// Triangle that points up.
     Triangle,
@@ -107,7 +107,7 @@ impl Marker {
 /// How one curve looks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Look {
-    /// Colour.
+    /// Colour of the line and its markers.
     pub colour: RGBColor,
     /// Lengths of dashes and gaps in nominal pixels; empty for a solid line.
     pub dashes: &'static [f64],

@@ -14,9 +14,9 @@ pub type Point = (f64, f64);
 /// One curve in drawn units.
 #[derive(Debug, Clone)]
 pub struct Trace {
-    /// Legend.
+    /// Its text in the legend.
     pub label: String,
-    /// Style.
+    /// What kind of curve it is.
     pub style: CurveStyle,
     /// Colour, dashes, marker.
     pub look: Look,

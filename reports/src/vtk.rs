@@ -36,7 +36,7 @@ pub struct Field<'a> {
 pub struct Piece<'a> {
     /// Positions, m.
     pub points: &'a [[f64; 2]],
-    /// Cells.
+    /// Cells between the points.
     pub cells: Cells<'a>,
     /// Fields at the points; each has as many values as there are points times its components.
     pub fields: Vec<Field<'a>>,

@@ -79,9 +79,9 @@ pub enum Kinematics {
 /// Velocity transfer between points and grid in the updated frame.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Transfer {
-    /// Particle-in-cell.
+    /// PIC: points take the velocity of the mesh.
     Pic,
-    /// Fluid-implicit-particle.
+    /// FLIP: points add the change of the velocity of the mesh.
     Flip,
     /// Affine particle-in-cell: it conserves angular momentum.
     #[default]

@@ -111,7 +111,7 @@ pub struct Check {
     pub meshes: Option<Estimate>,
     /// Order of theory in h, for `meshes`.
     pub order: Option<f64>,
-    /// Bounds.
+    /// Bounds within which the value is accepted.
     pub accept: Accept,
     /// Why the value is shown beside its reference and not judged.
     pub shown: Option<String>,
@@ -183,11 +183,11 @@ pub struct Case {
     pub suite: String,
     /// Name: the file without ending.
     pub name: String,
-    /// File.
+    /// File that it was read from.
     pub path: PathBuf,
     /// The sentence the case can refute.
     pub claim: String,
-    /// Tier.
+    /// Tier in which it runs, quick or full.
     pub tier: Tier,
     /// Estimated wall time on two cores, s.
     pub seconds: f64,
@@ -209,7 +209,7 @@ pub struct Case {
     pub convergence: Option<convergence::ConvergenceSetup>,
     /// Geometries of the `rings-sweep` study.
     pub rings: Option<Vec<Geometry>>,
-    /// Checks.
+    /// Checks of what its runs gave.
     pub checks: Vec<Check>,
     /// Charts of its runs.
     pub charts: Vec<Chart>,
@@ -223,7 +223,7 @@ pub fn json_schema() -> serde_json::Value {
 }
 
 impl Case {
-    /// `suite/name`.
+    /// Id of the case: `suite/name`.
     pub fn id(&self) -> String {
         format!("{}/{}", self.suite, self.name)
     }

@@ -80,7 +80,7 @@ impl Solution {
 pub enum Equation {
     /// Least-squares projection of the displacement.
     Projection,
-    /// Equilibrium.
+    /// Equilibrium under loads and conditions that do not change.
     Static,
     /// The phase-field equation with a given history energy.
     PhaseField,
@@ -91,7 +91,7 @@ pub enum Equation {
 /// Sides on which components of the displacement are prescribed.
 #[derive(Debug, Clone, Copy)]
 pub enum Held {
-    /// These.
+    /// These sides, with the components that are held.
     Sides(&'static [(Side, [bool; 2])]),
     /// Rollers on the axes x = 0 and y = 0, which bound a quarter.
     Axes,
@@ -117,13 +117,13 @@ fn unit_material(poisson_ratio: f64) -> Material {
 /// Fields that solve the equations of motion exactly, with the loads they need. Positions are in the
 /// reference configuration, in m; times in s.
 pub trait ExactSolution: Send + Sync {
-    /// Material.
+    /// Material of the body.
     fn material(&self) -> Material;
     /// Plane state.
     fn plane(&self) -> Plane;
     /// Displacement, m.
     fn displacement(&self, position: [f64; 2], time: f64) -> [f64; 2];
-    /// `∂u_i/∂x_j`.
+    /// Gradient of the displacement, `∂u_i/∂x_j`.
     fn displacement_gradient(&self, position: [f64; 2], time: f64) -> [[f64; 2]; 2];
     /// Velocity, m/s.
     fn velocity(&self, position: [f64; 2], time: f64) -> [f64; 2];

@@ -38,7 +38,7 @@ use verdict::{Balance, Outcome, ReferenceUsed, Verdict};
 pub struct Quantity {
     /// Key in `[curves]`.
     pub key: &'static str,
-    /// Words.
+    /// Name of the quantity in words.
     pub words: &'static str,
     /// Quantity in the reference data, after `plate-family/` or `plate/`.
     pub reference: &'static str,
@@ -71,7 +71,7 @@ pub(crate) const TIP_Y: usize = 5;
 /// A benchmark that results can be judged on.
 #[derive(Debug, Clone, Copy)]
 pub struct Benchmark {
-    /// Name.
+    /// Name under which results ask for it.
     pub name: &'static str,
     /// What it is.
     pub what: &'static str,

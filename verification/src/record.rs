@@ -29,7 +29,7 @@ pub fn json_schema() -> serde_json::Value {
 /// Everything one invocation found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ResultSet {
-    /// [`SCHEMA`].
+    /// Name and version of the format, [`SCHEMA`].
     #[schemars(extend("const" = SCHEMA))]
     pub schema: String,
     /// Where and when it was run.
@@ -52,7 +52,7 @@ pub struct Environment {
     pub dirty: bool,
     /// Compiler version.
     pub rustc: String,
-    /// Processor.
+    /// Name of the processor.
     pub cpu: String,
     /// Threads used.
     pub threads: usize,
@@ -120,7 +120,7 @@ impl Side {
 pub struct Reference {
     /// Value, if it is one number.
     pub value: Option<f64>,
-    /// Kind.
+    /// Kind of source it comes from.
     pub kind: ReferenceKind,
     /// Where it comes from.
     pub source: String,
@@ -152,7 +152,7 @@ pub struct Accept {
     pub min: Option<f64>,
     /// Largest value that passes.
     pub max: Option<f64>,
-    /// Reason.
+    /// Reason for these bounds.
     pub why: String,
     /// Whether they were chosen after the result: they tell a change, not whether the result is right.
     #[serde(skip_serializing_if = "std::ops::Not::not", default)]
@@ -191,14 +191,14 @@ fn is_zero(count: &u64) -> bool {
 /// One check and what it found.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Record {
-    /// `suite/case[/variant]/check`.
+    /// Id of the record: `suite/case[/variant]/check`.
     pub id: String,
     /// Ids that earlier results have for it.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub formerly: Vec<String>,
-    /// Suite.
+    /// Suite of the case.
     pub suite: String,
-    /// Case.
+    /// Case that has the check.
     pub case: String,
     /// `quick` or `full`.
     pub tier: String,
@@ -226,7 +226,7 @@ pub struct Record {
     /// Documented limit, in which the value may lie instead.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub limit: Option<Limit>,
-    /// Status.
+    /// What came of the check.
     pub status: Status,
     /// How, where and when, for errors and remarks.
     #[serde(skip_serializing_if = "Option::is_none", default)]

@@ -31,7 +31,7 @@ use crate::record::{Reference, ReferenceKind};
 pub struct ReferenceValue {
     /// Folder of its source.
     pub id: String,
-    /// Name.
+    /// Name of the value within its source.
     pub name: String,
     /// SI unit.
     pub unit: &'static str,
@@ -52,7 +52,7 @@ pub struct ReferenceValue {
 pub struct ReferenceBand {
     /// Folder of its source.
     pub id: String,
-    /// Name.
+    /// Name of the band within its source.
     pub name: String,
     /// SI unit.
     pub unit: &'static str,
@@ -64,7 +64,7 @@ pub struct ReferenceBand {
     pub sources: Vec<String>,
     /// What it is.
     pub note: String,
-    /// Citation.
+    /// Citation of its source.
     pub citation: String,
     /// Kind, for records.
     pub kind: ReferenceKind,

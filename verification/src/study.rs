@@ -49,9 +49,9 @@ pub struct Measurement {
     pub variant: String,
     /// Quantity in words.
     pub quantity: String,
-    /// Unit.
+    /// Unit of the value.
     pub unit: String,
-    /// Value.
+    /// Measured value; none in a plan, or if the event did not occur.
     pub value: Option<f64>,
     /// What it is held against.
     pub reference: Option<Reference>,
@@ -71,7 +71,7 @@ pub struct Findings {
     pub measurements: Vec<Measurement>,
     /// Tables behind the figures: file name without ending.
     pub series: Vec<(String, Table)>,
-    /// Figures.
+    /// Figures of what was measured.
     pub figures: Vec<Figure>,
     /// Whether nothing is computed.
     plan: bool,

@@ -24,7 +24,7 @@ const TARGETS: [([&str; 2], &[f64], f64); 3] = [
     (["elastic energy", "fracture energy"], &[0.04, 0.02], 4.0),
 ];
 
-/// Why.
+/// Reason of the first targets.
 const SEVERAL_TIMES: &str = "to be several times as fast as elements of the same error is the aim of this program. If fracture \
                              cost nothing, the ratio would be that of a step of the plate over an elastic step times as large";
 const AHEAD: &str = "at errors below 10 % fisura should not be slower. At large errors it is bounded by the time of its coarsest \

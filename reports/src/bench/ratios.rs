@@ -61,7 +61,7 @@ pub struct Found {
     pub what: String,
     /// Value: of the ratios of all rounds where all records have as many, else of medians alone.
     pub value: Spread,
-    /// Target.
+    /// Value that the ratio has to stay below or reach.
     pub target: Target,
     /// Whether all answers hold.
     pub verified: bool,

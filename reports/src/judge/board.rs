@@ -22,7 +22,7 @@ use crate::series::SeriesSet;
 pub struct Board {
     /// Key of the quantity, for file names.
     pub key: String,
-    /// Title.
+    /// Title of the drawing: the quantity in words.
     pub title: String,
     /// The drawing; empty if no submission has both an error and a spacing.
     pub svg: String,

@@ -6,7 +6,7 @@ use serde::Serialize;
 /// One quantity of the stored board.
 #[derive(Debug, Clone, Serialize)]
 pub struct StoredBoard {
-    /// Title.
+    /// Title of the drawing: the quantity in words.
     pub title: &'static str,
     /// File of the drawing in the gallery.
     pub file: &'static str,

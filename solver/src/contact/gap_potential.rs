@@ -190,9 +190,8 @@ impl GapPotential {
                 let (bodies, labels) = ([a, b], [(number, t), nearest.label]);
                 let friction = self.friction.as_mut().map(|friction| {
                     let tangent = [-nearest.direction[1], nearest.direction[0]];
-                    let stiffness = 0.5 * spring * place.length;
-                    let point = ContactPoint { bodies, number: point, labels, tangent, depth, stiffness };
-                    friction.force(point, outlines)
+                    let point = ContactPoint { bodies, number: point, labels, tangent };
+                    friction.force(point, [depth, 0.5 * spring * place.length], outlines)
                 });
                 self.forces.push(GapForce {
                     bodies,

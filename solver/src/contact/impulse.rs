@@ -61,7 +61,7 @@ pub(crate) struct Push {
 pub struct Unconverged {
     /// Where the impulse changed most in the last iteration, m.
     pub place: [f64; 2],
-    /// Iterations.
+    /// Iterations after which it was given up.
     pub iterations: usize,
     /// That change, relative to the largest impulse.
     pub residual: f64,

@@ -96,11 +96,11 @@ pub(super) fn bounds(shape: &Shape, [a, b]: [[f64; 2]; 2], tolerance: f64) -> bo
 /// Integrals over a shape.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ShapeIntegrals {
-    /// m².
+    /// Area inside the boundary, m².
     pub area: f64,
     /// Length of the boundary, m.
     pub length: f64,
-    /// m.
+    /// Centre of that area, m.
     pub centroid: [f64; 2],
 }
 

@@ -54,7 +54,7 @@ pub struct TotalFrame {
     grid: ControlGrid,
     /// Material points.
     pub lattice: Lattice,
-    /// Moduli.
+    /// Elastic moduli of its material, Pa.
     pub moduli: ElasticModuli,
     kinematics: Kinematics,
     shape: Shape,
@@ -83,9 +83,9 @@ pub struct TotalFrame {
     /// The phase field, if the material fractures.
     pub fracture: Option<LatticeFracture>,
     probes: Vec<ProbePlace>,
-    /// J-integrals.
+    /// Domains of the J-integrals that the scene asks for.
     domains: Vec<Domain>,
-    /// kg/m³.
+    /// Density of its material, kg/m³.
     density: f64,
     /// Where its crack begins, m, once there is one.
     crack_start: Option<[f64; 2]>,

@@ -26,7 +26,7 @@ pub trait Scalar:
     + Mul<Output = Self>
     + Neg<Output = Self>
 {
-    /// Zero.
+    /// The number zero.
     const ZERO: Self;
     /// The nearest number of this precision.
     fn of(value: f64) -> Self;
@@ -229,7 +229,7 @@ pub(crate) fn prefetch<T>(values: &[T], at: usize) {
 
 /// Work to be compiled for wide vector instructions and without.
 pub trait Vectorised {
-    /// Result.
+    /// What the work gives back.
     type Output;
     /// Whether it is also compiled for AVX-512, where the processor has that. It gives the same bits, takes
     /// long to compile, and only sweeps with much arithmetic per number gain from it.

@@ -35,19 +35,19 @@ impl Cohesive {
         self.series[1] / self.series[0] + self.power + 0.5
     }
 
-    /// a1.
+    /// First coefficient a1 of the denominator of g.
     pub fn a1(&self) -> f64 {
         self.series[0]
     }
 
-    /// g.
+    /// Degradation g of the stiffness at a phase field c.
     #[inline(always)]
     pub fn degradation(&self, phase: Lane) -> Lane {
         let [whole, lost] = [self.powers(phase)[0], self.lost(phase)[0]];
         whole.zip(whole + lost, |whole, all| whole / all)
     }
 
-    /// dg/dc.
+    /// Slope dg/dc at a phase field c.
     #[inline(always)]
     pub fn slope(&self, phase: Lane) -> Lane {
         let ([whole, first, _], [lost, fall, _]) = (self.powers(phase), self.lost(phase));
@@ -55,7 +55,7 @@ impl Cohesive {
         (first * lost - whole * fall).zip(all * all, |a, b| a / b)
     }
 
-    /// d²g/dc².
+    /// Curvature d²g/dc² at a phase field c.
     #[inline(always)]
     pub fn curvature(&self, phase: Lane) -> Lane {
         let ([whole, first, second], [lost, fall, bend]) = (self.powers(phase), self.lost(phase));

@@ -52,7 +52,7 @@ pub struct FractureModel {
     pub length_scale: f64,
     /// Residual stiffness k.
     pub residual_stiffness: f64,
-    /// Split.
+    /// Split of the energy into what drives the crack and the rest.
     pub split: Split,
     /// Tensor A of the gradient term, `[xx, yy, xy]`.
     pub gradient: [f64; 3],

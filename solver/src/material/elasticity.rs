@@ -10,7 +10,7 @@ use crate::scene::{Material, Plane};
 /// Moduli of the in-plane tensor, Pa.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ElasticModuli {
-    /// lam*.
+    /// First Lamé constant; in plane stress that of the reduced law, lam*.
     pub lambda: f64,
     /// Shear modulus.
     pub mu: f64,

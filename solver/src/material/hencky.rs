@@ -131,7 +131,7 @@ pub fn symmetric([[xx, xy], [yx, yy]]: Gradient) -> [f64; 3] {
     [xx, yy, fault!("shear-strain-doubled", 0.5 => 1.0) * (xy + yx)]
 }
 
-/// `atanh(q)/q`.
+/// The even function `atanh(q)/q`, also near zero.
 #[inline(always)]
 fn atanh_over(q: f64) -> f64 {
     if q < SERIES {

@@ -43,7 +43,7 @@ impl RandomField {
         exceeded.powf(self.random.modulus.recip()) * self.scale
     }
 
-    /// g.
+    /// Value g of the Gaussian field at a place, of variance one.
     fn normal(&self, place: [f64; 2]) -> f64 {
         let [x, y] = place.map(|x| x / self.random.correlation * PER_LENGTH);
         let [column, row] = [x, y].map(|x| x.round() as i64);

@@ -67,7 +67,7 @@ pub struct PointFracture {
 /// Extremes of a body of points; of finite numbers only.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Inspection {
-    /// Points.
+    /// Number of material points.
     pub points: usize,
     /// Points with a number that is not finite.
     pub not_finite: usize,

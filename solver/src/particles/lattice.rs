@@ -73,9 +73,9 @@ pub struct Lattice {
 /// Shape functions and physical gradients (1/m) of a batch of points, function n = l (p + 1) + k.
 #[derive(Debug, Clone, Copy)]
 pub struct BatchFunctions {
-    /// Values.
+    /// Values of the functions at the points.
     pub value: [Lane; MAX_FUNCTIONS],
-    /// Gradients.
+    /// Their physical gradients, 1/m.
     pub gradient: [[Lane; 2]; MAX_FUNCTIONS],
 }
 

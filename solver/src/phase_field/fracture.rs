@@ -37,7 +37,7 @@ const TIE: f64 = 1e-3;
 /// History, or present driving energy, and phase field of a body.
 #[derive(Debug, Clone)]
 pub struct LatticeFracture {
-    /// Constants.
+    /// Constants of the fracture model.
     pub model: FractureModel,
     /// Driving energy H at the points, J/m³: the largest so far, or with a threshold the present one.
     pub history: Vec<Lane>,

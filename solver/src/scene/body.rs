@@ -39,9 +39,9 @@ pub enum Split {
 /// How the stress across a cohesive crack falls with its opening.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Softening {
-    /// Linearly.
+    /// The stress falls linearly to zero.
     Linear,
-    /// Exponentially.
+    /// The stress decays exponentially.
     Exponential,
     /// As in concrete (Cornelissen et al. 1986).
     Cornelissen,
@@ -230,7 +230,7 @@ impl Crack {
 /// A body of one material.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Body {
-    /// Name.
+    /// Name of the body, for messages and columns.
     pub name: String,
     /// Name of its material.
     pub material: String,
@@ -250,7 +250,7 @@ pub struct Body {
     pub rigid: bool,
     /// How velocity and angular velocity of a rigid body vary in time.
     pub time: TimeFactor,
-    /// Tractions.
+    /// Tractions on its edges.
     pub tractions: Vec<Traction>,
     /// Conditions on its edges.
     pub conditions: Vec<EdgeCondition>,

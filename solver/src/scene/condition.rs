@@ -88,7 +88,7 @@ impl Load {
 /// Traction on an edge of a body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Traction {
-    /// Where.
+    /// Edge on which it acts.
     pub edge: Edge,
     /// What acts there at its full value.
     pub load: Load,
@@ -213,7 +213,7 @@ pub enum Hold {
 pub struct EdgeCondition {
     /// Name of its columns of reaction and work; without one it has none.
     pub name: Option<String>,
-    /// Where.
+    /// Edge that it holds or drives.
     pub edge: Edge,
     /// Which components are prescribed.
     pub hold: Hold,

@@ -19,7 +19,7 @@ pub(crate) enum BoundaryEdge {
         center: [f64; 2],
         /// Radius, m.
         radius: f64,
-        /// Sense.
+        /// Sense in which it is run through, 1 or −1.
         sign: f64,
     },
 }

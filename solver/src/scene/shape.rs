@@ -13,16 +13,16 @@ pub enum Shape {
         /// Upper right corner.
         max: [f64; 2],
     },
-    /// Disk.
+    /// Disk, bounded by a circle.
     Disk {
-        /// Centre.
+        /// Centre of the circle, m.
         center: [f64; 2],
-        /// Radius.
+        /// Radius of the circle, m.
         radius: f64,
     },
     /// Ring between two circles.
     Annulus {
-        /// Centre.
+        /// Centre of both circles, m.
         center: [f64; 2],
         /// Inner radius.
         inner_radius: f64,

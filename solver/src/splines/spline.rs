@@ -54,7 +54,7 @@ impl Span {
 /// Values and derivatives of the basis functions at a point; entries past the order are zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ShapeFunctions {
-    /// Values.
+    /// Values of the functions.
     pub value: [f64; MAX_ORDER],
     /// Derivatives with respect to x, 1/m or 1/unit of the knots.
     pub derivative: [f64; MAX_ORDER],

@@ -23,7 +23,7 @@ fn strain([xx, xy, yx, yy]: [Lane; 4]) -> [Lane; 3] {
 /// Stress and energy of an intact body.
 #[derive(Debug)]
 pub struct ElasticStress {
-    /// Moduli.
+    /// Elastic moduli of the intact body, Pa.
     pub moduli: ElasticModuli,
     /// Elastic energy of the strip per unit thickness, J/m.
     pub energy: Lane,
@@ -46,7 +46,7 @@ impl PointKernel for ElasticStress {
 pub struct HistoryUpdate<'a> {
     /// Cells of the strip to visit; empty if it is all.
     pub cells: &'a [bool],
-    /// Moduli.
+    /// Elastic moduli of the intact body, Pa.
     pub moduli: ElasticModuli,
     /// Fracture constants.
     pub model: FractureModel,
@@ -82,7 +82,7 @@ pub struct DegradedStress<'a> {
     /// Cells of the strip to visit, where the stress is added to that of the intact body; empty if it is all
     /// there is.
     pub cells: &'a [bool],
-    /// Moduli.
+    /// Elastic moduli of the intact body, Pa.
     pub moduli: ElasticModuli,
     /// Fracture constants.
     pub model: FractureModel,
@@ -162,9 +162,9 @@ impl PointKernel for DegradedStress<'_> {
 /// Stress and energy of an intact body, and the cells whose energy density reaches a level.
 #[derive(Debug)]
 pub(crate) struct ScreenedStress<'a> {
-    /// Moduli.
+    /// Elastic moduli of the intact body, Pa.
     pub moduli: ElasticModuli,
-    /// J/m³.
+    /// Energy density from which on a cell is noted, J/m³.
     pub level: f64,
     /// Batches in a cell.
     pub span: usize,
@@ -198,7 +198,7 @@ impl PointKernel for ScreenedStress<'_> {
 /// Degraded stress (E 6) with the phase field held as it is at the points.
 #[derive(Debug)]
 pub(crate) struct HeldPhaseStress<'a> {
-    /// Moduli.
+    /// Elastic moduli of the intact body, Pa.
     pub moduli: ElasticModuli,
     /// Fracture constants.
     pub model: FractureModel,

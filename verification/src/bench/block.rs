@@ -70,15 +70,15 @@ pub fn moving_scene(degree: usize, points: usize, cells: usize, margin: usize) -
 
 /// A cracked block and what its phases work on.
 pub struct Block {
-    /// `p2_2x2`.
+    /// Name of its records: degree and points, as in `p2_2x2`.
     pub name: String,
-    /// Scene.
+    /// The scene that it stands for.
     pub scene: Scene,
     /// Background patch.
     pub patch: Patch,
-    /// Points.
+    /// Its material points.
     pub lattice: Lattice,
-    /// Moduli.
+    /// Elastic moduli of its material, Pa.
     pub moduli: ElasticModuli,
     /// Fracture constants.
     pub model: FractureModel,

@@ -153,7 +153,7 @@ pub fn written<'a>(
 }
 
 /// Mean time of runs that take [`ENOUGH`] in all.
-fn mean_of_runs(run: impl Fn() -> Result<Sample, BenchError>) -> Result<Sample, BenchError> {
+pub fn mean_of_runs(run: impl Fn() -> Result<Sample, BenchError>) -> Result<Sample, BenchError> {
     let (mut sum, mut runs) = (run()?, 1.0);
     while sum.cpu_s < ENOUGH && runs < MOST_RUNS {
         let Sample { wall_s, cpu_s } = run()?;

@@ -17,7 +17,7 @@ const NOTHING: &str = "nothing was verified";
 /// Everything one invocation measured; all of it is exempt from byte-for-byte comparison.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BenchSet {
-    /// [`SCHEMA`].
+    /// Name and version of the format, [`SCHEMA`].
     pub schema: String,
     /// Where and when.
     pub environment: Environment,
@@ -44,11 +44,11 @@ pub struct Sample {
 /// Median and extremes of samples.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
-    /// Median.
+    /// Median of the samples.
     pub median: f64,
-    /// Smallest.
+    /// Smallest of the samples.
     pub min: f64,
-    /// Largest.
+    /// Largest of the samples.
     pub max: f64,
 }
 
@@ -96,7 +96,7 @@ impl AnswerError {
 /// How much of what one sample does.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Work {
-    /// Amount.
+    /// How many units of work it does.
     pub amount: f64,
     /// `particle-step`, `solve`, `byte` or `flop`.
     pub unit: String,
@@ -116,7 +116,7 @@ pub enum Clock {
 /// One benchmark.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct BenchRecord {
-    /// `family/…`.
+    /// Name of the record: `family/…`.
     pub id: String,
     /// First part of the id.
     pub family: String,
@@ -240,7 +240,7 @@ pub struct NamedPeer {
     pub degree: usize,
     /// `over-tuned-kernel` or `over-naive-kernel`: the kernel timed beside it in that run.
     pub quantity: String,
-    /// Ratio.
+    /// Ratio of its time to that of the kernel.
     pub value: f64,
     /// What to know before quoting it.
     pub remark: String,

@@ -83,6 +83,9 @@ enum Mesh {
     Divided(usize),
 }
 
+/// Seconds that the runs of a contestant may take until it is not run once more.
+const REPEATED: f64 = 2.0;
+
 /// All of them, as a file.
 const CONTESTS: &str = include_str!("../../templates/scoreboard.toml");
 
@@ -126,7 +129,7 @@ pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
                 }
             }
         }
-        round_robin(contestants, 1, settings.budget())
+        round_robin(contestants, settings.rounds(), REPEATED)
     })
 }
 
@@ -216,7 +219,7 @@ fn theirs(
     let file = settings.workspace.join("target/independent-fem").join(format!("{}.csv", problem.name));
     let mut words = vec![program.display().to_string()];
     words.extend(elements.options.iter().cloned());
-    words.extend(["--fraction", "1", "--interval-us", "0.25", "--tolerance", "1e-4"].map(String::from));
+    words.extend(["--fraction", "1", "--interval-us", "0.5", "--tolerance", "1e-4"].map(String::from));
     let fracture = scene.scene.materials.values().find_map(|material| material.fracture.as_ref());
     if let Some(fracture) = fracture {
         let slope = slope(fracture.model, 1, 2).filter(|_| toughness == Toughness::OfMesh).unwrap_or(0.0);
@@ -225,11 +228,12 @@ fn theirs(
     }
     words.extend(["--h-mm".into(), h.to_string(), "--out".into()]);
     let (program, library) = (Program::of_words(words, LIMIT), Arc::clone(library));
+    let run = move |file: &Path| elements::mean_of_runs(|| program.run(file));
     let answer = move |record: &mut BenchRecord, table: &Table| {
         record.verify_at_most("balance of energies over the largest", open(table), CLOSURE);
         note(record, errors(&case, &scene, &renamed(table), 1.0, &library));
     };
-    Ok(elements::written(record, file, move |file| program.run(file), answer))
+    Ok(elements::written(record, file, run, answer))
 }
 
 /// A history of the elements with the columns of this solver.

@@ -89,9 +89,9 @@ pub struct ConvergenceSetup {
     pub transfers: Vec<Transfer>,
     /// Offsets of the mesh against a body that cuts it, in spans, a curve each; 0.37 of it in y.
     pub offsets: Vec<f64>,
-    /// Meshes.
+    /// Family of patches from which the meshes are made.
     pub patch: PatchFamily,
-    /// Degrees.
+    /// Degrees of the splines, a curve each.
     pub degrees: Vec<usize>,
     /// Spans per direction, level by level.
     pub cells: Vec<usize>,
@@ -101,7 +101,7 @@ pub struct ConvergenceSetup {
     pub points: Option<Vec<usize>>,
     /// Mass matrix.
     pub mass: Mass,
-    /// Loads.
+    /// How the problem is loaded.
     pub loading: Loading,
     /// Mesh or time step.
     pub refine: Refine,

@@ -36,15 +36,15 @@ pub trait Scalar:
     fn constant(value: f64) -> Self;
     /// Sine and cosine.
     fn sin_cos(self) -> (Self, Self);
-    /// Sine.
+    /// Sine of an angle, rad.
     fn sin(self) -> Self {
         self.sin_cos().0
     }
-    /// Cosine.
+    /// Cosine of an angle, rad.
     fn cos(self) -> Self {
         self.sin_cos().1
     }
-    /// Exponential.
+    /// Exponential function.
     fn exp(self) -> Self;
     /// Natural logarithm.
     fn ln(self) -> Self;
@@ -73,7 +73,7 @@ impl Scalar for f64 {
 /// A value and its derivatives with respect to x, y, t.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dual<T> {
-    /// Value.
+    /// Value at the position and time.
     pub value: T,
     /// `∂/∂x, ∂/∂y, ∂/∂t`.
     pub gradient: [T; DIRECTIONS],

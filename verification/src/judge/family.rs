@@ -48,7 +48,7 @@ pub const FAMILY: [Declared; 5] = [
 pub struct Variant<'a> {
     /// Id in the library.
     pub id: String,
-    /// Legend.
+    /// Its text in legends.
     pub label: String,
     /// Where its uncertainty comes from.
     pub uncertainty: String,

@@ -52,7 +52,7 @@ pub struct Model {
     pub softening: Option<String>,
     /// l0 in Borden's convention, m; absent where not said.
     pub length_scale: Option<f64>,
-    /// k.
+    /// Residual stiffness k of broken material.
     pub residual_stiffness: f64,
     /// Whether the upper half alone was computed.
     pub half: bool,

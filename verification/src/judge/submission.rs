@@ -22,9 +22,9 @@ const MOST_BYTES: u64 = 1 << 20;
 pub struct Code {
     /// Name of the code.
     pub name: String,
-    /// Version.
+    /// Version of the code.
     pub version: Option<String>,
-    /// Commit.
+    /// Commit of the code.
     pub commit: Option<String>,
     /// URL or DOI.
     pub url: Option<String>,
@@ -41,9 +41,9 @@ pub struct Cost {
     pub cpu_s: Option<f64>,
     /// Wall time, s.
     pub wall_s: Option<f64>,
-    /// Cores.
+    /// Number of cores used.
     pub cores: Option<usize>,
-    /// Processor.
+    /// Name of the processor.
     pub processor: Option<String>,
     /// Peak memory, MB.
     pub memory_mb: Option<f64>,
@@ -54,11 +54,11 @@ pub struct Cost {
 /// Everything that `submission.toml` says.
 #[derive(Debug, Clone)]
 pub struct Submission {
-    /// Benchmark.
+    /// Name of the benchmark.
     pub benchmark: String,
-    /// Code.
+    /// Code that computed the results.
     pub code: Code,
-    /// Model.
+    /// Model that it computed with.
     pub model: Model,
     /// Method in words.
     pub method: Option<String>,
@@ -66,7 +66,7 @@ pub struct Submission {
     pub spacing: Option<f64>,
     /// Further figures of the discretisation, as written.
     pub discretisation: Vec<(String, String)>,
-    /// Cost.
+    /// What the run cost.
     pub cost: Cost,
     /// Numerical uncertainty that the submission states, by quantity: relative, of the tip in m.
     pub stated: [Option<f64>; 6],

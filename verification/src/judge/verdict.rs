@@ -16,7 +16,7 @@ pub fn json_schema() -> serde_json::Value {
 /// Everything one invocation judged.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct VerdictSet {
-    /// [`SCHEMA`].
+    /// Name and version of the format, [`SCHEMA`].
     #[schemars(extend("const" = SCHEMA))]
     pub schema: String,
     /// One verdict per submission.
@@ -85,7 +85,7 @@ pub struct Comparison {
 /// A quantity over the whole curve and by phase.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct QuantityVerdict {
-    /// Words.
+    /// Name of the quantity in words.
     pub quantity: String,
     /// Fail where a comparison fails, else that of the whole curve.
     pub outcome: Outcome,
@@ -116,7 +116,7 @@ pub struct Balance {
 pub struct ReferenceUsed {
     /// Folder and variant in the reference data, or the closed form.
     pub id: String,
-    /// Legend.
+    /// Its text in legends.
     pub label: String,
     /// Where its uncertainty comes from.
     pub uncertainty: String,
@@ -127,9 +127,9 @@ pub struct ReferenceUsed {
 pub struct Verdict {
     /// Folder, as given.
     pub folder: String,
-    /// Benchmark.
+    /// Name of the benchmark.
     pub benchmark: String,
-    /// Who.
+    /// Code that computed the results.
     pub code: Code,
     /// Method in words.
     pub method: Option<String>,
@@ -137,7 +137,7 @@ pub struct Verdict {
     pub spacing_m: Option<f64>,
     /// Further figures of the discretisation.
     pub discretisation: Vec<(String, String)>,
-    /// Cost.
+    /// What the run cost.
     pub cost: Cost,
     /// The nearest reference.
     pub reference: ReferenceUsed,

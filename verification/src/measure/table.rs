@@ -37,7 +37,7 @@ pub enum LooksAt {
     Tip,
     /// Pictures of the phase field.
     PhaseField,
-    /// Pictures.
+    /// Pictures of any field.
     Pictures,
 }
 

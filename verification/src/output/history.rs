@@ -21,7 +21,7 @@ pub struct Table {
 #[derive(Debug, Error)]
 #[error("{path}: {message}")]
 pub struct TableError {
-    /// File.
+    /// The file at fault.
     pub path: String,
     /// What is wrong, with the line where there is one.
     pub message: String,

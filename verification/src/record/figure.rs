@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Scale {
-    /// Linear.
+    /// Equal differences are equally long.
     #[default]
     Linear,
     /// Logarithmic, base 10.
@@ -19,7 +19,7 @@ pub enum Scale {
 pub struct Axis {
     /// Label with unit, as printed: `time (µs)`.
     pub label: String,
-    /// Scale.
+    /// Scale of the axis.
     #[serde(default)]
     pub scale: Scale,
     /// Range, if it is not to be fitted to the curves.
@@ -56,7 +56,7 @@ pub enum CurveStyle {
 /// One curve: two columns of a series file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Curve {
-    /// Legend.
+    /// Its text in the legend.
     pub label: String,
     /// Series, relative to the results folder.
     pub series: String,
@@ -68,7 +68,7 @@ pub struct Curve {
     pub x_scale: f64,
     /// Factor applied to the ordinate before drawing.
     pub y_scale: f64,
-    /// Style.
+    /// How the curve is drawn.
     pub style: CurveStyle,
     /// Half width of the uncertainty band: absolute, in drawn units.
     #[serde(default)]
@@ -108,7 +108,7 @@ impl Curve {
 /// A marked place in a chart: a band in which an event should fall.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Region {
-    /// Label.
+    /// Text beside the region.
     pub label: String,
     /// Range in drawn abscissa units, if the region is bounded in x.
     pub x: Option<[f64; 2]>,
@@ -136,7 +136,7 @@ pub struct SlopeTriangle {
 pub struct Floor {
     /// Ordinate in drawn units.
     pub y: f64,
-    /// Label.
+    /// Text beside the level.
     pub label: String,
 }
 
@@ -146,9 +146,9 @@ pub struct Floor {
 pub enum FigureBody {
     /// Curves over common axes.
     Chart {
-        /// Abscissa.
+        /// Axis of the abscissae.
         x: Axis,
-        /// Ordinate.
+        /// Axis of the ordinates.
         y: Axis,
         /// Curves, in drawing order.
         curves: Vec<Curve>,
@@ -199,13 +199,13 @@ pub struct Figure {
     pub id: String,
     /// Suite it belongs to.
     pub suite: String,
-    /// Title.
+    /// Title above the figure.
     pub title: String,
     /// Caption: resolution, points, steps, dt.
     pub caption: String,
     /// Every deviation from the cited source.
     pub deviations: Vec<String>,
-    /// Content.
+    /// What is drawn.
     pub body: FigureBody,
 }
 

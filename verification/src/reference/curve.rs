@@ -11,7 +11,7 @@ pub struct ReferenceCurve {
     pub id: String,
     /// What it describes: `plate/elastic-energy`.
     pub quantity: String,
-    /// Legend.
+    /// Its text in legends.
     pub label: String,
     /// Citation of its source.
     pub citation: String,

@@ -45,7 +45,7 @@ pub struct Source {
     /// Folder below the library's, with `/`: `estrada-2024/figure-3a`.
     #[serde(skip)]
     pub id: String,
-    /// Citation.
+    /// Citation of the source, as printed.
     pub citation: String,
     /// The same as an entry of BibTeX, where there is one.
     pub bibtex: Option<String>,

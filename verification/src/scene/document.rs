@@ -30,19 +30,19 @@ pub struct Node {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Value {
-    /// String.
+    /// Text of any kind.
     String(String),
-    /// Integer.
+    /// Number without a fraction.
     Integer(i64),
     /// Float; may be infinite or not a number, as TOML allows.
     Float(f64),
-    /// Boolean.
+    /// Either true or false.
     Boolean(bool),
     /// Date or time, as written.
     Datetime(String),
-    /// Array.
+    /// Values in order.
     Array(Vec<Node>),
-    /// Table.
+    /// Values by key.
     Table(BTreeMap<String, Node>),
 }
 

@@ -28,7 +28,7 @@ pub(super) fn boundary(item: &Item<'_>) -> Option<Boundary> {
     })
 }
 
-/// `[[body.condition]]`.
+/// Reads a table `[[body.condition]]`.
 pub(super) fn edge_condition(item: &Item<'_>) -> Option<EdgeCondition> {
     item.table(|fields| {
         let (name, edge) = (fields.maybe("name", Item::words), edge(fields));

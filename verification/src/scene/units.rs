@@ -47,29 +47,29 @@ const NAMED: [(Dimension, &str, &str); 15] = [
 impl Dimension {
     /// Plain number; angles too.
     pub const NONE: Self = Self::new(0, 0, 0);
-    /// m.
+    /// Length, in m.
     pub const LENGTH: Self = Self::new(0, 1, 0);
-    /// s.
+    /// Time, in s.
     pub const TIME: Self = Self::new(0, 0, 1);
-    /// kg.
+    /// Mass, in kg.
     pub const MASS: Self = Self::new(1, 0, 0);
-    /// m/s.
+    /// Velocity, in m/s.
     pub const VELOCITY: Self = Self::new(0, 1, -1);
-    /// m/s².
+    /// Acceleration, in m/s².
     pub const ACCELERATION: Self = Self::new(0, 1, -2);
     /// rad/s or 1/s.
     pub const RATE: Self = Self::new(0, 0, -1);
-    /// Hz.
+    /// Cycles per time, in Hz.
     pub const FREQUENCY: Self = Self { cycles: 1, ..Self::RATE };
-    /// Pa.
+    /// Force per area, in Pa.
     pub const STRESS: Self = Self::new(1, -1, -2);
-    /// kg/m³.
+    /// Mass per volume, in kg/m³.
     pub const DENSITY: Self = Self::new(1, -3, 0);
     /// J/m² = N/m.
     pub const ENERGY_PER_AREA: Self = Self::new(1, 0, -2);
-    /// N.
+    /// Force, in N.
     pub const FORCE: Self = Self::new(1, 1, -2);
-    /// J.
+    /// Energy, in J.
     pub const ENERGY: Self = Self::new(1, 2, -2);
 
     /// The dimension with these exponents and no cycles.
@@ -120,7 +120,7 @@ impl fmt::Display for Dimension {
 pub struct Quantity {
     /// Value in SI base units (angles in rad).
     pub value: f64,
-    /// Dimension.
+    /// Powers of the base units.
     pub dimension: Dimension,
 }
 

@@ -21,13 +21,13 @@ use crate::watch::{self, Stopped};
 /// What figures need to know of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunInfo {
-    /// Suite.
+    /// Suite of the case.
     pub suite: String,
-    /// Case.
+    /// Name of the case.
     pub case: String,
     /// Variant within the case, or empty.
     pub variant: String,
-    /// Legend.
+    /// Its text in legends.
     pub label: String,
     /// History, relative to the results folder.
     pub series: String,
@@ -57,7 +57,7 @@ pub struct PictureInfo {
     pub time: f64,
     /// Raster, relative to the results folder.
     pub series: String,
-    /// Pixels.
+    /// Numbers of pixels in x and y.
     pub pixels: [usize; 2],
 }
 
@@ -70,7 +70,7 @@ pub struct FinishedScene {
     pub run: SceneRun,
     /// What was computed.
     pub work: Work,
-    /// Cost.
+    /// Time that the run took.
     pub timing: Timing,
 }
 

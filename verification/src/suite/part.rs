@@ -24,7 +24,7 @@ pub struct Plan {
     pub commit: String,
     /// Fingerprint of the sources that the program was built from.
     pub sources: String,
-    /// Tier.
+    /// Tier that was asked for.
     pub tier: String,
     /// Suites; empty: all.
     pub suites: Vec<String>,
@@ -107,7 +107,7 @@ impl Plan {
 /// What one slice found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Part {
-    /// [`PART_SCHEMA`].
+    /// Name and version of the format, [`PART_SCHEMA`].
     pub schema: String,
     /// Which slice.
     pub slice: Slice,

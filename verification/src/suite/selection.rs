@@ -21,7 +21,7 @@ pub struct Selection {
 pub struct Malformed {
     /// Suite: its folder.
     pub suite: String,
-    /// `suite/name`.
+    /// Id of the case: `suite/name`.
     pub id: String,
     /// What is wrong with it.
     pub error: SceneFileError,

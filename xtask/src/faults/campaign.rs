@@ -24,7 +24,7 @@ pub struct Campaign<'a> {
     pub store: &'a Store<'a>,
     /// Runs jobs.
     pub runner: &'a Runner,
-    /// Flags.
+    /// Flags that all commands have.
     pub common: &'a Common,
 }
 

@@ -29,7 +29,7 @@ pub enum State {
 /// A check that no fault turns red, whatever its variant.
 #[derive(Debug, PartialEq, Eq, Serialize)]
 pub struct Idle {
-    /// `suite/case/quantity`.
+    /// Id of the check without its variant: `suite/case/quantity`.
     check: String,
     /// Why it stays.
     reason: Option<&'static str>,

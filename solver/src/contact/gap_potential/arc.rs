@@ -32,7 +32,7 @@ pub(crate) struct Arc {
 /// A place on a boundary.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BoundaryPlace {
-    /// m.
+    /// Where it is, m.
     pub position: [f64; 2],
     /// Outward unit normal.
     pub normal: [f64; 2],
@@ -234,7 +234,7 @@ pub(crate) fn rules() -> [Rule; 2] {
 pub(crate) struct Closest {
     /// Distance, m.
     pub distance: f64,
-    /// m.
+    /// Where it is, m.
     pub position: [f64; 2],
     /// Unit vector towards it.
     pub direction: [f64; 2],

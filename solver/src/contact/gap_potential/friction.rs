@@ -43,9 +43,6 @@ pub(crate) struct ContactPoint {
     pub labels: [(usize, f64); 2],
     /// Unit vector along the boundary of b.
     pub tangent: [f64; 2],
-    /// Depth, m, and κ/2 w, N/m².
-    pub depth: f64,
-    pub stiffness: f64,
 }
 
 /// History variables of a Gauss point in contact.
@@ -77,17 +74,17 @@ impl Friction {
         (coefficient > 0.0).then_some(Self { coefficient, before, histories, found, stored: 0.0, dissipated: 0.0 })
     }
 
-    /// Force on b at a Gauss point, N/m, with the boundaries now. They come in the order of their keys. Asked
-    /// again at the same positions, it is the same bit by bit.
-    pub(crate) fn force(&mut self, point: ContactPoint, now: &[Outline]) -> [f64; 2] {
-        let limit = self.coefficient * point.depth;
+    /// Force on b at a Gauss point, N/m, with its depth (m) and κ/2 w (N/m²), and the boundaries now. They come
+    /// in the order of their keys. Asked again at the same positions, it is the same bit by bit.
+    pub(crate) fn force(&mut self, point: ContactPoint, [depth, stiffness]: [f64; 2], now: &[Outline]) -> [f64; 2] {
+        let limit = self.coefficient * depth;
         let known = self.histories.binary_search_by(|history| history.point.key().cmp(&point.key()));
         let [slip_before, force_before] =
             known.map_or([0.0; 2], |at| [self.histories[at].slip, self.histories[at].force]);
         let moved = point.slide(&self.before, now);
         let trial = slip_before + moved;
         let slip = trial.clamp(-limit, limit);
-        let force = point.stiffness * slip;
+        let force = stiffness * slip;
         let kept = fault!("slip-not-returned", slip => trial);
         self.dissipated += 0.5 * (force_before + force) * (moved - (kept - slip_before));
         self.stored += 0.5 * force * slip;
@@ -176,8 +173,8 @@ mod tests {
             let nearest = nearest([block, -depth], &now[1], 0..1, |_| true).unwrap();
             let tangent = [-nearest.direction[1], nearest.direction[0]];
             let labels = [(0, 0.5), nearest.label];
-            let point = ContactPoint { bodies: [0, 1], number: 2, labels, tangent, depth, stiffness: STIFFNESS };
-            force = friction.force(point, &now);
+            let point = ContactPoint { bodies: [0, 1], number: 2, labels, tangent };
+            force = friction.force(point, [depth, STIFFNESS], &now);
         }
         friction.end(now.to_vec());
         assert!(force[1].abs() < 1e-15, "{force:?}");

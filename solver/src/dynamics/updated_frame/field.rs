@@ -41,7 +41,7 @@ pub struct DiscreteField {
     pub(super) sides: Vec<HeldSide>,
     /// Conditions on edges that move with it.
     pub(super) edges: Option<Box<HeldEdges>>,
-    /// Moduli.
+    /// Elastic moduli of its material, Pa.
     pub moduli: ElasticModuli,
     /// Logarithmic change of volume over that of area: less than 1 in plane stress, where the thickness
     /// follows.

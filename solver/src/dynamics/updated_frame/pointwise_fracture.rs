@@ -24,7 +24,7 @@ use crate::splines::spline::MAX_FUNCTIONS;
 /// History and phase field of a body.
 #[derive(Debug, Clone)]
 pub struct PointwiseFracture {
-    /// Constants.
+    /// Constants of the fracture model.
     pub model: FractureModel,
     /// History energy, phase field, … of each point, in the order of the points.
     pub points: Vec<FracturePoint>,

@@ -36,8 +36,8 @@ pub(super) struct Group {
 /// The points of a lattice and which neighbours are joined.
 pub(super) struct PointGraph<'a> {
     lattice: &'a Lattice,
-    /// Tile and lane of every column of spans.
-    columns: Vec<(usize, usize)>,
+    /// Positions of the points of tables, m.
+    positions: Vec<[f64; 2]>,
     /// Columns and rows of points of tables.
     size: [usize; 2],
     /// First functions of the columns and rows of spans.
@@ -67,14 +67,14 @@ impl<'a> PointGraph<'a> {
         for (number, point) in cut.iter().enumerate() {
             cut_spans.entry(point.first).or_insert(number..number).end = number + 1;
         }
-        let (links, joined_to_cut) = (vec![0; size[0] * size[1]], BTreeMap::new());
-        let mut graph = Self { lattice, columns, size, firsts, links, cut, cut_spans, joined_to_cut };
-        for point in 0..graph.links.len() {
-            let (batch, lane) = lattice.batch_of(&graph.columns, point);
-            if lattice.weights_of(batch)[lane] > 0.0 {
-                graph.links[point] = EXISTS;
-            }
-        }
+        let of = |point| {
+            let (batch, lane) = lattice.batch_of(&columns, point);
+            let exists = lattice.weights_of(batch)[lane] > 0.0;
+            (if exists { EXISTS } else { 0 }, lattice.position(batch, lane))
+        };
+        let (links, positions) = (0..size[0] * size[1]).map(of).unzip();
+        let joined_to_cut = BTreeMap::new();
+        let mut graph = Self { lattice, positions, size, firsts, links, cut, cut_spans, joined_to_cut };
         let is_free = |graph: &Self, points: [PointIndex; 2]| {
             let step = points.map(|point| graph.position(point));
             let slit = slits.iter().any(|slit| fault!("slit-bridged", cross(step, *slit) => false));
@@ -162,11 +162,10 @@ impl<'a> PointGraph<'a> {
     }
 
     fn position(&self, point: PointIndex) -> [f64; 2] {
-        if let Some(number) = point.checked_sub(self.links.len()) {
-            return self.cut[number].point.0;
+        match point.checked_sub(self.links.len()) {
+            Some(number) => self.cut[number].point.0,
+            None => self.positions[point],
         }
-        let (batch, lane) = self.lattice.batch_of(&self.columns, point);
-        self.lattice.position(batch, lane)
     }
 
     /// The point of a table a step from another one, forwards or backwards, if there is one.

@@ -98,7 +98,7 @@ impl Sheets {
 
 /// What bars the step from a point to another one, beside slits.
 pub(super) enum Gaps<'a> {
-    /// Nothing.
+    /// Nothing beside slits.
     None,
     /// What lies outside a shape.
     Of(&'a Shape),

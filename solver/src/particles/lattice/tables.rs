@@ -146,7 +146,7 @@ impl Mapping {
 /// The weight function W and the geometry map at a batch of points.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct MappedPoint {
-    /// 1/W.
+    /// Inverse 1/W of the weight function.
     pub inverse_weight: Lane,
     /// `∂W/∂ξ_d / W`.
     pub weight_slope: [Lane; 2],

@@ -12,7 +12,7 @@ pub struct RationalFunctions {
     pub count: usize,
     /// Index of the control point of each.
     pub control: [usize; MAX_FUNCTIONS],
-    /// Values.
+    /// Values of the functions.
     pub value: [f64; MAX_FUNCTIONS],
     /// Parametric gradients, 1/unit of the knots.
     pub gradient: [[f64; 2]; MAX_FUNCTIONS],
@@ -73,7 +73,7 @@ impl MapPoint {
 /// A scalar field and its gradient at a position.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct PointValue {
-    /// Value.
+    /// Value of the field.
     pub value: f64,
     /// Gradient, 1/m; of a function of parameters, 1/unit of the knots.
     pub gradient: [f64; 2],

@@ -24,7 +24,7 @@ const STARTS: [f64; 3] = [0.5, 1.0 / 6.0, 5.0 / 6.0];
 pub struct Location {
     /// Span in each direction.
     pub span: [usize; 2],
-    /// Parameters.
+    /// Parameters of the patch, in units of the knots.
     pub parameters: [f64; 2],
 }
 
