@@ -21,6 +21,11 @@
 //! push apart. They are found constraint by constraint until they converge (projected Gauss–Seidel),
 //! starting from those of the step before.
 //!
+//! That takes from an impact the energy of about a span. Where the scene gives boundaries a stiffness κ they
+//! overlap instead, and the normal force is that of the potential which contact has in the total frame
+//! ([`gap_potential`]), `Σ κ d dS/2` over the segments of both bodies with depths d. Friction is found as
+//! before.
+//!
 //! The force P/dt acts over a kick from w to v, so `−P · (w + v)/2`, with w and v relative velocities, is
 //! lost: that is the contact loss of the ledger, half of it booked with the velocity the step begins with,
 //! half with the one it ends with. A rigid body does external work with its own velocity.
@@ -40,14 +45,14 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::checkpoint::{Archive, StateError};
-use crate::linear_algebra::extremes::{around, larger};
+use crate::linear_algebra::extremes::{around, larger, smaller};
 use crate::linear_algebra::vectors::{dot, unit};
 use crate::scene::Scene;
 use crate::splines::patch::Patch;
 pub use constraint::{BodyView, ContactConstraint};
 use constraint::{BoundaryFunctions, Impulse};
 use encounter::{Encounter, Sight, Squares};
-use motion::{AHEAD, MOST, TooFast};
+use motion::{AHEAD, MOST, TooDeep, TooFast};
 pub(crate) use rigid::RigidBody;
 use surface::Center;
 pub use surface::Surface;
@@ -76,6 +81,8 @@ pub struct ContactLedger {
 #[derive(Debug, Clone)]
 pub struct ContactSolver {
     friction: f64,
+    /// Whether boundaries are not rigid.
+    soft: bool,
     squares: Squares,
     /// Shortest span of the patch, m.
     reach: f64,
@@ -95,6 +102,7 @@ impl ContactSolver {
     pub fn new(scene: &Scene, whole: &Patch) -> Option<Self> {
         Some(Self {
             friction: scene.contact.as_ref()?.friction,
+            soft: scene.contact.as_ref()?.stiffness.is_some(),
             squares: Squares::new(whole),
             reach: whole.shortest_span(),
             rigid: scene.bodies.iter().filter(|b| b.rigid).map(|b| RigidBody::new(&scene.mesh, b)).collect(),
@@ -167,7 +175,7 @@ impl ContactSolver {
         let segments = surfaces.map(|surface| surface.segments_in(common));
         for (own, other, sign) in [(0, 1, 1.0), (1, 0, -1.0)] {
             for &segment in &segments[own] {
-                let Center { position, normal, displacement } = surfaces[own].center(segment);
+                let Center { position, normal, displacement, length } = surfaces[own].center(segment);
                 let Some(nearest) = surfaces[other].nearest(position, &segments[other], reach) else { continue };
                 let cosine = dot(normal, nearest.normal);
                 let is_cutting = cosine > FACING;
@@ -195,7 +203,7 @@ impl ContactSolver {
                 }
                 let middle = [0, 1].map(|d| position[d] + 0.5 * sign * nearest.distance * normal[d]);
                 let square = self.squares.of(middle);
-                let sight = Sight { position: middle, gap: nearest.distance, normal };
+                let sight = Sight { position: middle, gap: nearest.distance, normal, length };
                 let encounter = || Encounter { bodies, square, seen: Vec::new(), span: self.reach };
                 squares.entry(square).or_insert_with(encounter).seen.push(sight);
             }
@@ -213,7 +221,24 @@ impl ContactSolver {
             Some(body) => Some(BoundaryFunctions::new(body, position)?),
             None => None,
         };
-        Some(ContactConstraint { gap: encounter.gap(), bodies: pair, square, position, normal, on_a, on_b })
+        let softer =
+            |stiffness: f64| bodies.get(b).map_or(stiffness, |b| smaller(stiffness, b.stiffness.unwrap_or(stiffness)));
+        let pressing = bodies[a].stiffness.map(|stiffness| softer(stiffness) * encounter.overlap());
+        let gap = encounter.gap();
+        Some(ContactConstraint { gap, pressing, bodies: pair, square, position, normal, on_a, on_b })
+    }
+
+    /// Whether boundaries are not rigid.
+    pub(crate) fn is_soft(&self) -> bool {
+        self.soft
+    }
+
+    /// The deepest overlap of boundaries that are not rigid, if it is deeper than contact follows.
+    pub(crate) fn too_deep(&self) -> Option<TooDeep> {
+        let soft = self.constraints.iter().filter(|constraint| constraint.pressing.is_some());
+        let deepest = soft.min_by(|a, b| a.gap.total_cmp(&b.gap))?;
+        let spans = -deepest.gap / self.reach;
+        (spans > MOST).then_some(TooDeep { place: deepest.position, spans, follows: MOST })
     }
 
     /// Stores or takes up what steps change. Rigid bodies and constraints follow from time and bodies.
@@ -221,7 +246,7 @@ impl ContactSolver {
     /// # Errors
     /// Bytes of another scene.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self { friction: _, squares: _, reach: _, rigid: _, constraints: _, step, last, ledger } = self;
+        let Self { friction: _, soft: _, squares: _, reach: _, rigid: _, constraints: _, step, last, ledger } = self;
         archive.value(step)?;
         archive.value(last)?;
         archive.value(ledger)

@@ -175,15 +175,20 @@ pub struct Contact {
     pub fragments: bool,
     /// Whether a body may meet itself.
     pub self_contact: bool,
-    /// Stiffness of the boundaries of bodies in the total frame, over that of a span.
-    pub stiffness: f64,
+    /// Stiffness of the boundaries of bodies over that of a span. Without it boundaries are rigid in the
+    /// updated frame, and have [`Self::SOFT`] in the total one.
+    pub stiffness: Option<f64>,
+}
+
+impl Contact {
+    /// Half of this stiffness makes a contact softer than the first span behind it, and longer.
+    pub const SOFT: f64 = 0.5;
 }
 
 impl Default for Contact {
-    /// Without friction. Half of this stiffness makes a contact softer than the first span behind it, and
-    /// longer.
+    /// Without friction.
     fn default() -> Self {
-        Self { friction: 0.0, fragments: false, self_contact: false, stiffness: 0.5 }
+        Self { friction: 0.0, fragments: false, self_contact: false, stiffness: None }
     }
 }
 

@@ -67,6 +67,8 @@ pub struct BodyView<'a> {
     pub inverse_mass: &'a [f64],
     /// Density, kg/m³.
     pub density: f64,
+    /// Stiffness κ of its boundary, Pa/m; none if that is rigid.
+    pub stiffness: Option<f64>,
     /// Control points and components whose velocity is prescribed.
     pub fixed: &'a BTreeSet<(usize, usize)>,
     /// Velocity half a step ago, m/s.
@@ -88,6 +90,8 @@ impl BodyView<'_> {
 pub struct ContactConstraint {
     /// Gap, m; negative where the boundaries overlap.
     pub gap: f64,
+    /// Force that presses the bodies apart, N/m, if their boundaries are not rigid.
+    pub(super) pressing: Option<f64>,
     /// Numbers of the bodies a and b; rigid ones are counted after the others, so only b may be rigid.
     pub(super) bodies: [usize; 2],
     /// Column and row of the square it stands for.

@@ -50,6 +50,8 @@ pub(super) struct Sight {
     pub position: [f64; 2],
     pub gap: f64,
     pub normal: [f64; 2],
+    /// Length of the segment, m.
+    pub length: f64,
 }
 
 /// What the segments of two bodies see of each other whose middle of the gap lies in a square.
@@ -83,6 +85,12 @@ impl Encounter {
 
     pub(super) fn gap(&self) -> f64 {
         self.mean(|sight| [sight.gap])[0]
+    }
+
+    /// Depth of the boundaries in each other, integrated along half of their length, m².
+    pub(super) fn overlap(&self) -> f64 {
+        let half = fault!("overlap-counted-twice", 0.5 => 1.0);
+        self.seen.iter().map(|sight| half * sight.length * larger(-sight.gap, 0.0)).sum()
     }
 
     /// Mean normal, unless the normals cancel each other.

@@ -33,10 +33,9 @@ pub(crate) mod friction;
 pub(crate) mod thin_parts;
 mod winding;
 
-use thiserror::Error;
-
 use super::ContactLedger;
 use super::impulse::ContactForce;
+use super::motion::TooDeep;
 use super::rigid::{RigidOutline, RigidPose};
 use crate::checkpoint::{Archive, StateError};
 use crate::linear_algebra::extremes::{around, larger, smaller};
@@ -59,18 +58,6 @@ const LEAST: f64 = 0.25;
 /// Distance before a boundary, in spans, at which its own body is looked for, and depth that counts as none:
 /// boundaries that touch overlap by round-off.
 const SKIN: f64 = 1e-9;
-
-/// A boundary that is deeper in another body than contact follows.
-#[derive(Debug, Clone, Copy, PartialEq, Error)]
-#[error("a boundary is {spans:.3} spans deep in another body, and contact follows {follows:.3} there")]
-pub struct TooDeep {
-    /// Place, m.
-    pub place: [f64; 2],
-    /// Depth, in spans.
-    pub spans: f64,
-    /// Depth that contact follows there, in spans.
-    pub follows: f64,
-}
 
 /// A pair of opposite forces, and that of friction beside it.
 #[derive(Debug, Clone, Copy)]

@@ -199,10 +199,9 @@ impl ContactSolver {
                 }
                 None => self.rigid[b - bodies.len()].pose.velocity_at(constraint.position),
             };
-            let impulse = self
-                .last
-                .get(&(constraint.bodies, constraint.square))
-                .map_or_else(Impulse::default, |last| last.times(kick.length));
+            let last = self.last.get(&(constraint.bodies, constraint.square)).copied().unwrap_or_default();
+            let normal = constraint.pressing.unwrap_or(last.normal);
+            let impulse = Impulse { normal, ..last }.times(kick.length);
             constraints.push(Acting { constraint, weights, rigid, round_off: 0.0, answers: [0.0; 2], impulse });
         }
         for acting in &mut constraints {
@@ -344,7 +343,8 @@ impl Acting<'_> {
         let Impulse { mut normal, mut tangent } = self.impulse;
         let relative = self.relative(nodes, |node| node.after);
         let [along_normal, along_tangent] = self.answers;
-        if along_normal > 0.0 {
+        // Where boundaries are not rigid the normal impulse is given.
+        if self.constraint.pressing.is_none() && along_normal > 0.0 {
             let allowed = -fault!("open-gap-counts-as-closed", self.constraint.gap.max(0.0) => 0.0) / step;
             let pressed = normal + (allowed - dot(relative, self.constraint.normal)) / along_normal;
             normal = if pressed < fault!("contact-pulls", 0.0 => f64::NEG_INFINITY) { 0.0 } else { pressed };

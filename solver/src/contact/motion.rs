@@ -1,6 +1,6 @@
-//! How far bodies approach each other in a step. Contact looks at gaps once per step: what closes more than a
-//! span between two looks is through before it is seen. Bodies that slide along each other, turn in each
-//! other or part are not.
+//! How far bodies approach each other in a step, and how deep they may be in each other. Contact looks at
+//! gaps once per step: what closes more than a span between two looks is through before it is seen. Bodies
+//! that slide along each other, turn in each other or part are not.
 
 use thiserror::Error;
 
@@ -29,6 +29,18 @@ pub struct TooFast {
     pub place: [f64; 2],
     /// By how much they approach in a step, in spans.
     pub spans: f64,
+}
+
+/// A boundary that is deeper in another body than contact follows.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[error("a boundary is {spans:.3} spans deep in another body, and contact follows {follows:.3} there")]
+pub struct TooDeep {
+    /// Place, m.
+    pub place: [f64; 2],
+    /// Depth, in spans.
+    pub spans: f64,
+    /// Depth that contact follows there, in spans.
+    pub follows: f64,
 }
 
 /// A body as it begins to move.

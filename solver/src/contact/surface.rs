@@ -47,6 +47,8 @@ pub struct Center {
     pub normal: [f64; 2],
     /// Its displacement in the last step, m.
     pub displacement: [f64; 2],
+    /// Length of the segment, m.
+    pub length: f64,
 }
 
 impl Surface {
@@ -154,7 +156,13 @@ impl Surface {
             position: [0, 1].map(|d| 0.5 * (a[d] + b[d])),
             normal: normal(a, b),
             displacement: self.way_at(segment, 0.5),
+            length: (b[0] - a[0]).hypot(b[1] - a[1]),
         }
+    }
+
+    /// Centres of all segments.
+    pub(crate) fn centers(&self) -> impl Iterator<Item = Center> + '_ {
+        (0..self.segments.len() as u32).map(|segment| self.center(segment))
     }
 
     /// The point nearest to a position (m) on one of `segments`, if any lies within `reach` (m).

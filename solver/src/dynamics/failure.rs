@@ -3,9 +3,8 @@
 use thiserror::Error;
 
 use super::loads::LostTraction;
-use crate::contact::gap_potential::TooDeep;
 use crate::contact::impulse::Unconverged;
-use crate::contact::motion::TooFast;
+use crate::contact::motion::{TooDeep, TooFast};
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::particles::points::OutsidePatch;
 

@@ -3,9 +3,9 @@
 use super::Simulation;
 use super::breakdown::{cause, numbers};
 use super::frame::{Bodies, either};
-use crate::contact::gap_potential::TooDeep;
+use crate::contact::ContactSolver;
 use crate::contact::impulse::Unconverged;
-use crate::contact::motion::TooFast;
+use crate::contact::motion::{TooDeep, TooFast};
 use crate::dynamics::energy::Sample;
 use crate::dynamics::failure::Failure;
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
@@ -160,9 +160,16 @@ impl Simulation {
         let damped = "motion that varies over one or two spans is damped, and so are stresses where points cross spans; use \
                       frame = \"total\" and kinematics = \"finite\", or compare meshes";
         let grows = "this is unstable; lower analysis.safety, or use degree 2 or more and more particles_per_cell";
-        let contact = match &self.frame {
-            Bodies::Updated(_) => ("contact without friction", "took", damped),
-            Bodies::Total(_) => ("overlaps of boundaries", "hold", "contact is soft; raise contact.stiffness"),
+        let soft = self.updated_frame().is_none_or(|frame| frame.contact.as_ref().is_some_and(ContactSolver::is_soft));
+        let contact = if soft {
+            ("overlaps of boundaries", "hold", "contact is soft; raise contact.stiffness")
+        } else {
+            (
+                "contact without friction",
+                "took",
+                "an impact of rigid boundaries takes the energy of a span; use \
+              contact.stiffness = 0.5, which lets boundaries overlap, frame = \"total\", or compare meshes",
+            )
         };
         let spins = self.updated_frame().is_none_or(|frame| frame.keeps_spin());
         let unspun = "flip, pic and xpic brake bodies that turn; use analysis.transfer = \"apic\", the default";

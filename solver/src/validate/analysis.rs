@@ -82,18 +82,18 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
         findings.error("contact.friction", message, "give a coefficient of 0 or more");
     }
     if let Some(contact) = &scene.contact {
-        stiffness(contact, analysis.frame, findings);
+        stiffness(contact, findings);
     }
 }
 
 /// Boundaries that push each other apart have a stiffness.
-fn stiffness(contact: &Contact, frame: Frame, findings: &mut Findings) {
-    let (key, stiffness) = ("contact.stiffness", contact.stiffness);
-    if !(stiffness > 0.0 && stiffness.is_finite()) {
-        let remedy = format!("give a number above 0, such as {}", Contact::default().stiffness);
-        findings.error(key, format!("boundaries with {stiffness} times the stiffness of a span"), remedy);
-    } else if frame == Frame::Updated && stiffness != Contact::default().stiffness {
-        findings.warn(key, "has no effect with frame = \"updated\", whose contact is rigid; remove it");
+fn stiffness(contact: &Contact, findings: &mut Findings) {
+    if let Some(stiffness) = contact.stiffness
+        && !(stiffness > 0.0 && stiffness.is_finite())
+    {
+        let remedy = format!("give a number above 0, such as {}", Contact::SOFT);
+        let message = format!("boundaries with {stiffness} times the stiffness of a span");
+        findings.error("contact.stiffness", message, remedy);
     }
 }
 

@@ -37,6 +37,20 @@ fn bodies_pass_through_each_other_without_a_contact_table() {
     assert!(samples.iter().all(|s| s.momentum.iter().all(|p| p.abs() < 1e-12 * one)));
 }
 
+#[test]
+fn boundaries_that_are_not_rigid_give_back_what_they_take() {
+    let impact = |stiffness: Option<f64>| {
+        let (simulation, samples) = run(&blocks(Some(Contact { friction: 0.3, stiffness, ..Contact::default() })));
+        let (field, end) = (&simulation.updated_frame().unwrap().fields[0], samples.last().unwrap());
+        assert!(end.momentum[0].abs() < 1e-12 * field.mass() && end.closure.abs() < 1e-12, "{end:?}");
+        (-field.momentum()[0] / field.mass(), end.contact.unwrap().loss / samples[0].kinetic)
+    };
+    let ((rigid, taken), (soft, left)) = (impact(None), impact(Some(0.5)));
+    // What is missing with soft boundaries is what the transfers took on the way.
+    assert!(taken > 0.1 && left.abs() < 0.01, "{taken} {left}");
+    assert!(soft > 0.83 && soft > rigid + 0.1, "{soft} {rigid}");
+}
+
 /// Lengths and times times a power of two leave the velocities as they are, bit by bit.
 #[test]
 fn bodies_meet_at_any_size() {

@@ -37,6 +37,19 @@ fn ending(scene: &Scene) -> (Simulation, Option<Breakdown>) {
     (simulation, None)
 }
 
+#[test]
+fn boundaries_that_are_too_soft_end_the_run() {
+    let mut scene = scene(2, [1.0, 1.0], [16, 16]);
+    scene.bodies = vec![
+        Body { velocity: [0.0, -0.2], ..body(rectangle([0.25, 0.25], [0.75, 0.625]), [2; 2]) },
+        rigid("floor", rectangle([-1.0, -1.0], [2.0, 0.24]), [0.0; 2]),
+    ];
+    scene.contact = Some(Contact { stiffness: Some(0.01), ..Contact::default() });
+    scene.analysis.end_time = 2.0;
+    let message = ending(&scene).1.expect("the block sinks in").to_string();
+    assert!(message.contains("spans deep in another body"), "{message}");
+}
+
 /// Blocks whose lower side lies half a span above a knot line stand on their floor.
 #[test]
 fn a_block_over_one_row_of_control_points_stands_on_its_floor() {

@@ -16,7 +16,7 @@ fn closing_ring(degree: usize) -> Scene {
     let ring = body(shape, [degree + 1; 2]);
     scene.bodies = vec![Body { material: "solid".into(), velocity_gradient, ..ring }];
     scene.analysis = Analysis { frame: Frame::Total, kinematics: Kinematics::Finite, end_time: 3.0, ..scene.analysis };
-    scene.contact = Some(Contact { friction: 0.3, self_contact: true, stiffness: 4.0, ..Contact::default() });
+    scene.contact = Some(Contact { friction: 0.3, self_contact: true, stiffness: Some(4.0), ..Contact::default() });
     scene.output.bodies = true;
     scene
 }

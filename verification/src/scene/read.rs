@@ -68,7 +68,7 @@ fn scene(item: &Item<'_>) -> Option<Scene> {
             Some(Contact {
                 fragments: fields.or("fragments", false, Item::flag),
                 self_contact: fields.or("self_contact", false, Item::flag),
-                stiffness: fields.or("stiffness", Contact::default().stiffness, number),
+                stiffness: fields.maybe("stiffness", number),
                 friction: friction?,
             })
         })

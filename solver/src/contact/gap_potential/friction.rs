@@ -74,8 +74,8 @@ impl Friction {
         (coefficient > 0.0).then_some(Self { coefficient, before, histories, found, stored: 0.0, dissipated: 0.0 })
     }
 
-    /// Force on b at a Gauss point, N/m, with its depth (m) and κ/2 w (N/m²), and the boundaries now. They come
-    /// in the order of their keys. Asked again at the same positions, it is the same bit by bit.
+    /// Force on b at a Gauss point, N/m, with its depth (m) and κ/2 w (N/m²), and the boundaries now. They
+    /// come in the order of their keys. Asked again at the same positions, it is the same bit by bit.
     pub(crate) fn force(&mut self, point: ContactPoint, [depth, stiffness]: [f64; 2], now: &[Outline]) -> [f64; 2] {
         let limit = self.coefficient * depth;
         let known = self.histories.binary_search_by(|history| history.point.key().cmp(&point.key()));

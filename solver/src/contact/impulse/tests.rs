@@ -8,7 +8,7 @@ use crate::contact::constraint::BoundaryFunctions;
 /// A constraint of body 0 on the left with a rigid body, which pushes it along the normal.
 fn constraint(normal: [f64; 2], x: f64) -> ContactConstraint {
     let (bodies, square, on_a) = ([0, 1], [0, 0], BoundaryFunctions::default());
-    ContactConstraint { gap: 0.0, bodies, square, position: [x, 0.5], normal, on_a, on_b: None }
+    ContactConstraint { gap: 0.0, pressing: None, bodies, square, position: [x, 0.5], normal, on_a, on_b: None }
 }
 
 /// A constraint, its nodes with their weights, and the velocity of a rigid body.

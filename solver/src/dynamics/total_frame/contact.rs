@@ -22,7 +22,7 @@ impl TotalFrame {
             material_at(patch, lattice, point, |at| mass.moves(at)).ok_or(bare)
         };
         let (shortest, speed) = (patch.shortest_span(), moduli.dilatational_speed(*density));
-        let stiffness = contact.stiffness * (*density * speed * speed) / shortest;
+        let stiffness = contact.stiffness.unwrap_or(Contact::SOFT) * (*density * speed * speed) / shortest;
         let parameters = (shortest, stiffness, contact.friction > 0.0);
         self.boundary = Some(Box::new(MaterialBoundary::new((&body.shape, mesh), parameters, functions)?));
         Ok(())

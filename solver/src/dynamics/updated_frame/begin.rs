@@ -90,6 +90,8 @@ impl DiscreteField {
         let loads = body.tractions.iter().map(|t| SurfaceLoad::new(whole, body, t)).collect();
         let moduli = ElasticModuli::new(material, analysis.plane);
         let finite = analysis.kinematics == Kinematics::Finite;
+        let wave_modulus = material.density * moduli.dilatational_speed(material.density).powi(2);
+        let soft = scene.contact.as_ref().and_then(|contact| contact.stiffness);
         Ok(Self {
             fracture: FractureModel::of(material).map(crack),
             nodes,
@@ -102,6 +104,7 @@ impl DiscreteField {
             moduli,
             thickening: thickening(material, analysis.plane),
             density: material.density,
+            boundary_stiffness: soft.map(|stiffness| stiffness * wave_modulus / whole.shortest_span()),
             thickness: analysis.thickness,
             gravity: Gravity::new(analysis),
             crack_start: crack_start(body),

@@ -47,6 +47,8 @@ pub struct DiscreteField {
     /// follows.
     pub(super) thickening: f64,
     pub(super) density: f64,
+    /// Stiffness κ of its boundary, Pa/m, if that is not rigid.
+    pub(super) boundary_stiffness: Option<f64>,
     pub(super) thickness: f64,
     pub(super) gravity: Gravity,
     /// Material points, sorted by span.
@@ -145,7 +147,7 @@ impl DiscreteField {
 
     /// What contact sees of it.
     pub fn view(&self) -> BodyView<'_> {
-        let Self { patch, cells, surface, nodes, density, .. } = self;
+        let Self { patch, cells, surface, nodes, density, boundary_stiffness, .. } = self;
         let NodalFields { grid, inverse_mass, velocity, acceleration, .. } = nodes;
         BodyView {
             patch,
@@ -154,6 +156,7 @@ impl DiscreteField {
             grid: *grid,
             inverse_mass,
             density: *density,
+            stiffness: *boundary_stiffness,
             fixed: &nodes.fixed,
             velocity,
             acceleration,

@@ -4,9 +4,12 @@ use super::field::DiscreteField;
 use super::transfer::walk;
 use super::velocity_transfer::stable_fraction;
 use super::windows::{Reach, Window, scatter};
+use crate::contact::constraint::BoundaryFunctions;
+use crate::contact::surface::Center;
 use crate::dynamics::critical_step::{StiffnessOperator, highest_frequency};
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::lane::{Vectorised, dispatch};
+use crate::linear_algebra::vectors::dot;
 use crate::material::elasticity::ElasticModuli;
 use crate::particles::points::{Cell, Point};
 use crate::splines::patch::Patch;
@@ -31,6 +34,21 @@ pub(crate) struct PointStiffness<'a> {
     field: Vec<[f64; 4]>,
     /// Their forces, in two parts.
     image: Vec<[f64; 4]>,
+    /// Springs of a boundary that is not rigid: where, along which normal, and how stiff, Pa. Each is twice
+    /// as stiff as the boundary: for two equal bodies that is what both feel of each other.
+    springs: Vec<(BoundaryFunctions, [f64; 2], f64)>,
+}
+
+impl DiscreteField {
+    /// Springs of the boundary, if it is not rigid.
+    fn springs(&self) -> Vec<(BoundaryFunctions, [f64; 2], f64)> {
+        let (Some(surface), Some(stiffness)) = (&self.surface, self.boundary_stiffness) else { return Vec::new() };
+        let view = self.view();
+        let spring = |Center { position, normal, length, .. }: Center| {
+            Some((BoundaryFunctions::new(&view, position)?, normal, 2.0 * stiffness * length))
+        };
+        surface.centers().filter_map(spring).collect()
+    }
 }
 
 impl<'a> PointStiffness<'a> {
@@ -40,7 +58,7 @@ impl<'a> PointStiffness<'a> {
         let free = nodes.free();
         let masses = free.iter().map(|&(at, _)| nodes.mass[at]).collect();
         let zeros = vec![[0.0; 4]; nodes.grid.len()];
-        Self { frame, masses, free, field: zeros.clone(), image: zeros }
+        Self { frame, masses, free, field: zeros.clone(), image: zeros, springs: frame.springs() }
     }
 }
 
@@ -56,7 +74,7 @@ impl StiffnessOperator for PointStiffness<'_> {
     }
 
     fn stiffness(&mut self, x: &[f64], out: &mut [f64]) {
-        let Self { frame, free, field, image, .. } = self;
+        let Self { frame, free, field, image, springs, .. } = self;
         for (&(at, component), x) in free.iter().zip(x) {
             (field[at][component], field[at][component + 2]) = (*x, *x);
         }
@@ -73,6 +91,13 @@ impl StiffnessOperator for PointStiffness<'_> {
                 window,
             });
         });
+        for (functions, normal, stiffness) in springs {
+            let weights = functions.weights().iter();
+            let moved: f64 = weights.clone().map(|&(at, w)| w * dot(*normal, [field[at][0], field[at][1]])).sum();
+            for &(at, weight) in weights {
+                (0..2).for_each(|d| image[at][d] += weight * *stiffness * moved * normal[d]);
+            }
+        }
         for (&(at, component), out) in free.iter().zip(out) {
             *out = image[at][component] + image[at][component + 2];
         }

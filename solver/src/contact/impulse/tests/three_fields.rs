@@ -55,6 +55,7 @@ impl Meeting {
         let fit = BoundaryFunctions::default;
         let described = self.touching.iter().map(|&(bodies, normal, gap)| ContactConstraint {
             gap,
+            pressing: None,
             bodies,
             square: [0, 0],
             position: [0.0; 2],
