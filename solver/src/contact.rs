@@ -204,7 +204,7 @@ impl ContactSolver {
                 let middle = [0, 1].map(|d| position[d] + 0.5 * sign * nearest.distance * normal[d]);
                 let square = self.squares.of(middle);
                 let sight = Sight { position: middle, gap: nearest.distance, normal, length };
-                let encounter = || Encounter { bodies, square, seen: Vec::new(), span: self.reach };
+                let encounter = || Encounter { bodies, square, seen: Vec::new(), span: self.reach, soft: self.soft };
                 squares.entry(square).or_insert_with(encounter).seen.push(sight);
             }
         }

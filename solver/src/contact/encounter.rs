@@ -61,17 +61,26 @@ pub(super) struct Encounter {
     pub seen: Vec<Sight>,
     /// Length of a span, m.
     pub span: f64,
+    /// Whether the boundaries are not rigid.
+    pub soft: bool,
 }
 
 impl Encounter {
-    /// Mean over the segments, with weights: a curve touches a line at one place, not in all of a square.
+    /// Mean over the segments, with weights: a curve touches a line at one place, not in all of a square. The
+    /// weights of boundaries that are not rigid are their forces: so these work at the mean as they do at the
+    /// segments.
     fn mean<const N: usize>(&self, value: impl Fn(&Sight) -> [f64; N]) -> [f64; N] {
-        let least = larger(self.seen.iter().map(|sight| sight.gap).fold(f64::INFINITY, smaller), 0.0);
+        let nearest = self.seen.iter().map(|sight| sight.gap).fold(f64::INFINITY, smaller);
+        let least = larger(nearest, 0.0);
         let (mut sum, mut count) = ([0.0; N], 0.0);
         for sight in &self.seen {
             let (open, overlap) = (larger(sight.gap, 0.0) - least, larger(-sight.gap, 0.0));
             let depth = fault!("all-segments-of-a-square-count", DEPTH => f64::INFINITY) * self.span;
-            let weight = larger(1.0 - open / depth, LEAST) + overlap / (OVERLAP * self.span);
+            let weight = if self.soft && nearest < 0.0 {
+                sight.length * overlap
+            } else {
+                larger(1.0 - open / depth, LEAST) + overlap / (OVERLAP * self.span)
+            };
             let value = value(sight);
             count += weight;
             (0..N).for_each(|n| sum[n] += weight * value[n]);

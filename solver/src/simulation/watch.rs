@@ -9,7 +9,7 @@ use crate::contact::motion::{TooDeep, TooFast};
 use crate::dynamics::energy::Sample;
 use crate::dynamics::failure::Failure;
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
-use crate::linear_algebra::extremes::larger;
+use crate::linear_algebra::extremes::{larger, smaller};
 use crate::output::inspection::{Inspection, InvertedPoint};
 use crate::simulation::breakdown::Breakdown;
 
@@ -175,6 +175,9 @@ impl Simulation {
         let unspun = "flip, pic and xpic brake bodies that turn; use analysis.transfer = \"apic\", the default";
         let transfers = ("transfers between points and grid", "took", if spins { damped } else { unspun });
         let by_transfers = sample.transfer_loss.unwrap_or(0.0);
+        // Transfers smooth what soft boundaries push: what contact gives these take, and the sum counts.
+        let given = if soft && sample.transfer_loss.is_some() { smaller(by_contact, 0.0) } else { 0.0 };
+        let (by_transfers, by_contact) = (by_transfers + given, by_contact - given);
         for ((who, does, remedy), column, loss) in
             [(transfers, "transfer_loss_j", by_transfers), (contact, "contact_loss_j less friction_j", by_contact)]
         {
