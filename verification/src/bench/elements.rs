@@ -152,7 +152,7 @@ pub fn written<'a>(
     Contestant { record, run: Box::new(run) }
 }
 
-/// Mean time of runs that take [`ENOUGH`] in all.
+/// Mean time of runs that take half a second of processor time in all.
 pub fn mean_of_runs(run: impl Fn() -> Result<Sample, BenchError>) -> Result<Sample, BenchError> {
     let (mut sum, mut runs) = (run()?, 1.0);
     while sum.cpu_s < ENOUGH && runs < MOST_RUNS {
