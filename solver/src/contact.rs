@@ -52,7 +52,7 @@ use crate::splines::patch::Patch;
 pub use constraint::{BodyView, ContactConstraint};
 use constraint::{BoundaryFunctions, Impulse};
 use encounter::{Encounter, Sight, Squares};
-use motion::{AHEAD, MOST, TooDeep, TooFast};
+use motion::{AHEAD, MOST, NotFollowed, TooDeep, TooFast};
 pub(crate) use rigid::RigidBody;
 use surface::Center;
 pub use surface::Surface;
@@ -63,6 +63,10 @@ const FACING: f64 = -0.5;
 /// the flanks of a wedge of half angle 3° or more. Beside a right corner that is pressed in the faces of the
 /// corner do not meet the face beneath.
 const CUTTING: f64 = -0.05;
+/// Cosine from which on the nearest face is the far side of a thin body that a boundary is deep in; and the
+/// depth under it, in spans, that is none: faces of bodies on each other may lie in one line.
+const BEHIND: f64 = 0.5;
+const FLUSH: f64 = 0.1;
 /// Gap up to which a constraint is looked at, in spans, unless more could close in a step.
 const NEAR: f64 = 0.1;
 
@@ -126,8 +130,9 @@ impl ContactSolver {
     /// Finds where bodies are near each other now.
     ///
     /// # Errors
-    /// If bodies are about to meet that approach each other too far in a step.
-    pub fn find(&mut self, bodies: &[BodyView]) -> Result<(), TooFast> {
+    /// If bodies are about to meet that approach each other too far in a step, or boundaries that are not
+    /// rigid are too deep in each other.
+    pub fn find(&mut self, bodies: &[BodyView]) -> Result<(), NotFollowed> {
         let surfaces: Vec<&Surface> =
             bodies.iter().filter_map(|body| body.surface).chain(self.rigid.iter().map(|r| &r.surface)).collect();
         let boxes: Vec<_> = surfaces.iter().map(|surface| surface.bounding_box()).collect();
@@ -170,7 +175,7 @@ impl ContactSolver {
         is_rigid: bool,
         common: [[f64; 2]; 2],
         reach: f64,
-    ) -> Result<Vec<Encounter>, TooFast> {
+    ) -> Result<Vec<Encounter>, NotFollowed> {
         let mut squares = BTreeMap::new();
         let segments = surfaces.map(|surface| surface.segments_in(common));
         for (own, other, sign) in [(0, 1, 1.0), (1, 0, -1.0)] {
@@ -178,6 +183,10 @@ impl ContactSolver {
                 let Center { position, normal, displacement, length } = surfaces[own].center(segment);
                 let Some(nearest) = surfaces[other].nearest(position, &segments[other], reach) else { continue };
                 let cosine = dot(normal, nearest.normal);
+                let (depth, follows) = (-nearest.distance / self.reach, if cosine > BEHIND { FLUSH } else { MOST });
+                if self.soft && depth > follows {
+                    return Err(TooDeep { place: position, spans: depth, follows }.into());
+                }
                 let is_cutting = cosine > FACING;
                 if is_cutting && (cosine > fault!("flanks-not-met", CUTTING => FACING) || nearest.distance >= 0.0) {
                     continue;
@@ -199,7 +208,7 @@ impl ContactSolver {
                     continue;
                 }
                 if closing > MOST * self.reach {
-                    return Err(TooFast { place: position, spans: closing / self.reach });
+                    return Err(TooFast { place: position, spans: closing / self.reach }.into());
                 }
                 let middle = [0, 1].map(|d| position[d] + 0.5 * sign * nearest.distance * normal[d]);
                 let square = self.squares.of(middle);
@@ -213,17 +222,20 @@ impl ContactSolver {
 
     /// The constraint of a square; none if a body has no material there.
     fn constraint(&self, encounter: &Encounter, bodies: &[BodyView]) -> Option<ContactConstraint> {
+        let Encounter { bodies: pair @ [a, b], square, .. } = *encounter;
+        let softer =
+            |stiffness: f64| bodies.get(b).map_or(stiffness, |b| smaller(stiffness, b.stiffness.unwrap_or(stiffness)));
+        let pressing = bodies[a].stiffness.map(|stiffness| softer(stiffness) * encounter.overlap());
+        if pressing == Some(0.0) {
+            return None; // not yet
+        }
         let position = encounter.position();
         let normal = encounter.direction()?;
-        let Encounter { bodies: pair @ [a, b], square, .. } = *encounter;
         let on_a = BoundaryFunctions::new(&bodies[a], position)?;
         let on_b = match bodies.get(b) {
             Some(body) => Some(BoundaryFunctions::new(body, position)?),
             None => None,
         };
-        let softer =
-            |stiffness: f64| bodies.get(b).map_or(stiffness, |b| smaller(stiffness, b.stiffness.unwrap_or(stiffness)));
-        let pressing = bodies[a].stiffness.map(|stiffness| softer(stiffness) * encounter.overlap());
         let gap = encounter.gap();
         Some(ContactConstraint { gap, pressing, bodies: pair, square, position, normal, on_a, on_b })
     }
@@ -231,14 +243,6 @@ impl ContactSolver {
     /// Whether boundaries are not rigid.
     pub(crate) fn is_soft(&self) -> bool {
         self.soft
-    }
-
-    /// The deepest overlap of boundaries that are not rigid, if it is deeper than contact follows.
-    pub(crate) fn too_deep(&self) -> Option<TooDeep> {
-        let soft = self.constraints.iter().filter(|constraint| constraint.pressing.is_some());
-        let deepest = soft.min_by(|a, b| a.gap.total_cmp(&b.gap))?;
-        let spans = -deepest.gap / self.reach;
-        (spans > MOST).then_some(TooDeep { place: deepest.position, spans, follows: MOST })
     }
 
     /// Stores or takes up what steps change. Rigid bodies and constraints follow from time and bodies.

@@ -90,7 +90,7 @@ struct Options {
     /// With --problem ring: seed of the random toughness
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
-    /// Threads
+    /// Number of threads
     #[arg(long, value_name = "N", default_value_t = 1)]
     threads: usize,
     /// CSV file to write

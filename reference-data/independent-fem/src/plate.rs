@@ -42,14 +42,14 @@ pub struct Plate {
     pub end: f64,
     /// Time between samples, s.
     pub interval: f64,
-    /// Threads.
+    /// Number of threads.
     pub threads: usize,
 }
 
 /// The plate at one time; energies are those of the whole plate.
 #[derive(Debug, Clone, Copy)]
 pub struct Sample {
-    /// s.
+    /// Time of the sample, s.
     pub time: f64,
     /// J per metre of thickness.
     pub energies: Energies,
@@ -64,11 +64,11 @@ pub struct Sample {
 /// Numbers of a finished run.
 #[derive(Debug, Clone, Copy)]
 pub struct Totals {
-    /// Steps.
+    /// Number of time steps.
     pub steps: usize,
     /// Step, s.
     pub step: f64,
-    /// Elements.
+    /// Number of elements.
     pub elements: usize,
     /// Iterations of all phase-field solves.
     pub iterations: usize,

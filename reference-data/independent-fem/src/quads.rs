@@ -123,11 +123,11 @@ impl Quads {
 /// A Gauss point: slopes of the four corner functions along x and y (1/m), their values, area (m²).
 #[derive(Debug, Clone, Copy)]
 pub struct GaussPoint {
-    /// Slopes.
+    /// Gradients of the functions, 1/m.
     pub slopes: [[f64; 2]; 4],
-    /// Values.
+    /// Values of the functions.
     pub values: [f64; 4],
-    /// Area.
+    /// Area that the point stands for, m².
     pub area: f64,
 }
 

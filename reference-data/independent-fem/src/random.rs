@@ -9,7 +9,7 @@ pub struct Toughness {
     pub modulus: f64,
     /// Length of correlation, m.
     pub correlation: f64,
-    /// Seed.
+    /// Seed of the random numbers.
     pub seed: u64,
 }
 

@@ -40,6 +40,7 @@ use super::rigid::{RigidOutline, RigidPose};
 use crate::checkpoint::{Archive, StateError};
 use crate::linear_algebra::extremes::{around, larger, smaller};
 use crate::linear_algebra::vectors::dot;
+use crate::material::elasticity::ElasticModuli;
 use crate::splines::quadrature::Rule;
 use arc::{BoundaryPlace, Closest, Outline, nearest, rules};
 use friction::{ContactPoint, Friction};
@@ -58,6 +59,13 @@ const LEAST: f64 = 0.25;
 /// Distance before a boundary, in spans, at which its own body is looked for, and depth that counts as none:
 /// boundaries that touch overlap by round-off.
 const SKIN: f64 = 1e-9;
+
+/// Stiffness κ of the boundary (Pa/m) of a body of such a density (kg/m³) for a stiffness α and a shortest
+/// span (m).
+pub(crate) fn boundary_stiffness(stiffness: f64, moduli: &ElasticModuli, density: f64, span: f64) -> f64 {
+    let speed = moduli.dilatational_speed(density);
+    stiffness * (density * speed * speed) / span
+}
 
 /// A pair of opposite forces, and that of friction beside it.
 #[derive(Debug, Clone, Copy)]

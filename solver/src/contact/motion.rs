@@ -43,6 +43,17 @@ pub struct TooDeep {
     pub follows: f64,
 }
 
+/// Boundaries whose contact cannot be followed.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum NotFollowed {
+    /// They approach each other too far in a step.
+    #[error(transparent)]
+    TooFast(#[from] TooFast),
+    /// They are too deep in each other.
+    #[error(transparent)]
+    TooDeep(#[from] TooDeep),
+}
+
 /// A body as it begins to move.
 struct Moving<'a> {
     body: &'a Body,

@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use super::loads::LostTraction;
 use crate::contact::impulse::Unconverged;
-use crate::contact::motion::{TooDeep, TooFast};
+use crate::contact::motion::{NotFollowed, TooDeep, TooFast};
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::particles::points::OutsidePatch;
 
@@ -117,6 +117,15 @@ impl Failure {
             | Self::TooDeep(TooDeep { place, .. }) => Some(place),
             Self::LostTraction { lost, .. } => Some(lost.place()),
             _ => None,
+        }
+    }
+}
+
+impl From<NotFollowed> for Failure {
+    fn from(lost: NotFollowed) -> Self {
+        match lost {
+            NotFollowed::TooFast(lost) => lost.into(),
+            NotFollowed::TooDeep(lost) => lost.into(),
         }
     }
 }

@@ -164,12 +164,9 @@ impl Simulation {
         let contact = if soft {
             ("overlaps of boundaries", "hold", "contact is soft; raise contact.stiffness")
         } else {
-            (
-                "contact without friction",
-                "took",
-                "an impact of rigid boundaries takes the energy of a span; use \
-              contact.stiffness = 0.5, which lets boundaries overlap, frame = \"total\", or compare meshes",
-            )
+            let remedy = "an impact of rigid boundaries takes the energy of a span; use contact.stiffness = 0.5, which \
+                          lets boundaries overlap, frame = \"total\", or compare meshes";
+            ("contact without friction", "took", remedy)
         };
         let spins = self.updated_frame().is_none_or(|frame| frame.keeps_spin());
         let unspun = "flip, pic and xpic brake bodies that turn; use analysis.transfer = \"apic\", the default";

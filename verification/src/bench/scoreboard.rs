@@ -129,7 +129,7 @@ pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
                 }
             }
         }
-        round_robin(contestants, settings.rounds(), REPEATED)
+        round_robin(contestants, if settings.quick { 1 } else { settings.rounds() }, REPEATED)
     })
 }
 

@@ -2,9 +2,9 @@
 
 use super::TotalFrame;
 use super::boundary::MaterialBoundary;
-use crate::contact::gap_potential::GapForce;
 use crate::contact::gap_potential::arc::Outline;
 use crate::contact::gap_potential::thin_parts::{OwnPairs, ThinParts};
+use crate::contact::gap_potential::{GapForce, boundary_stiffness};
 use crate::dynamics::failure::Failure;
 use crate::dynamics::loads::material_at;
 use crate::dynamics::surface::SurfacePoint;
@@ -21,8 +21,8 @@ impl TotalFrame {
             let bare = Failure::BareBoundary { body: 0, place: point.position };
             material_at(patch, lattice, point, |at| mass.moves(at)).ok_or(bare)
         };
-        let (shortest, speed) = (patch.shortest_span(), moduli.dilatational_speed(*density));
-        let stiffness = contact.stiffness.unwrap_or(Contact::SOFT) * (*density * speed * speed) / shortest;
+        let (shortest, stiffness) = (patch.shortest_span(), contact.stiffness.unwrap_or(Contact::SOFT));
+        let stiffness = boundary_stiffness(stiffness, moduli, *density, shortest);
         let parameters = (shortest, stiffness, contact.friction > 0.0);
         self.boundary = Some(Box::new(MaterialBoundary::new((&body.shape, mesh), parameters, functions)?));
         Ok(())

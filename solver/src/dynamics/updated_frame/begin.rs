@@ -15,6 +15,7 @@ use super::velocity_transfer::VelocityTransfer;
 use super::{UpdatedFrame, fragments, views};
 use crate::checkpoint::{Archive, StateError};
 use crate::contact::Surface;
+use crate::contact::gap_potential::boundary_stiffness;
 use crate::dynamics::energy::Ledger;
 use crate::dynamics::failure::Failure;
 use crate::dynamics::loads::{Balance, Gravity, LostTraction};
@@ -90,8 +91,7 @@ impl DiscreteField {
         let loads = body.tractions.iter().map(|t| SurfaceLoad::new(whole, body, t)).collect();
         let moduli = ElasticModuli::new(material, analysis.plane);
         let finite = analysis.kinematics == Kinematics::Finite;
-        let wave_modulus = material.density * moduli.dilatational_speed(material.density).powi(2);
-        let soft = scene.contact.as_ref().and_then(|contact| contact.stiffness);
+        let of_boundary = |stiffness| boundary_stiffness(stiffness, &moduli, material.density, whole.shortest_span());
         Ok(Self {
             fracture: FractureModel::of(material).map(crack),
             nodes,
@@ -104,7 +104,7 @@ impl DiscreteField {
             moduli,
             thickening: thickening(material, analysis.plane),
             density: material.density,
-            boundary_stiffness: soft.map(|stiffness| stiffness * wave_modulus / whole.shortest_span()),
+            boundary_stiffness: scene.contact.as_ref().and_then(|contact| contact.stiffness).map(of_boundary),
             thickness: analysis.thickness,
             gravity: Gravity::new(analysis),
             crack_start: crack_start(body),
