@@ -161,12 +161,18 @@ impl Simulation {
                       frame = \"total\" and kinematics = \"finite\", or compare meshes";
         let grows = "this is unstable; lower analysis.safety, or use degree 2 or more and more particles_per_cell";
         let soft = self.updated_frame().is_none_or(|frame| frame.contact.as_ref().is_some_and(ContactSolver::is_soft));
-        let contact = if soft {
-            ("overlaps of boundaries", "hold", "contact is soft; raise contact.stiffness")
-        } else {
-            let remedy = "an impact of rigid boundaries takes the energy of a span; use contact.stiffness = 0.5, which \
-                          lets boundaries overlap, frame = \"total\", or compare meshes";
-            ("contact without friction", "took", remedy)
+        let contact = match (soft, self.updated_frame().is_some()) {
+            (true, false) => ("overlaps of boundaries", "hold", "contact is soft; raise contact.stiffness"),
+            (true, true) => {
+                let remedy = "bodies that lie on each other need a larger contact.stiffness, and those that land on a \
+                              corner smaller cells or frame = \"total\"";
+                ("overlaps of boundaries", "hold or took", remedy)
+            }
+            (false, _) => {
+                let remedy = "an impact of rigid boundaries takes the energy of a span; use contact.stiffness = 0.5, \
+                              which lets boundaries overlap, frame = \"total\", or compare meshes";
+                ("contact without friction", "took", remedy)
+            }
         };
         let spins = self.updated_frame().is_none_or(|frame| frame.keeps_spin());
         let unspun = "flip, pic and xpic brake bodies that turn; use analysis.transfer = \"apic\", the default";
