@@ -51,7 +51,7 @@ fn boundaries_that_are_too_soft_end_the_run() {
         assert!(message.contains("spans deep in another body"), "{message}");
     };
     sinks(&scene);
-    // Plates of half a span would pass through each other: the far face of either is nearer than the near one.
+    // Plates of half a span would pass through each other: the far face of either is nearer.
     let plate = |low: f64, speed: f64| Body {
         velocity: [0.0, speed],
         ..body(rectangle([0.25, low], [0.75, low + 0.03125]), [2; 2])
