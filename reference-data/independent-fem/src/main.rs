@@ -81,6 +81,9 @@ struct Options {
     /// The test of Kalthoff and Winkler, with elements of --h-mm; elastic with --frozen
     #[arg(long)]
     kalthoff: bool,
+    /// With --kalthoff: elements by which the node at the tip of the slit lies ahead of it
+    #[arg(long, value_name = "PART", requires = "kalthoff", default_value_t = 0.0)]
+    tip_ahead: f64,
     /// A problem on quadrilaterals with AT1; elastic with --frozen
     #[arg(long, conflicts_with = "kalthoff")]
     problem: Option<Problem>,
@@ -120,6 +123,7 @@ fn run_kalthoff(options: &Options) -> Result<(), Box<dyn Error>> {
     let run = Kalthoff {
         h: options.h_mm * 1e-3,
         graded: options.graded,
+        tip_ahead: options.tip_ahead,
         material: cracking(options, kalthoff::steel(options.plane_stress)),
         tolerance: (!options.frozen).then_some(options.tolerance),
         fraction: options.fraction,

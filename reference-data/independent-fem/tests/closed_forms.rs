@@ -222,6 +222,7 @@ fn the_energies_of_a_shear_crack_with_a_threshold_balance() {
     let equal = Kalthoff {
         h: 1e-3,
         graded: false,
+        tip_ahead: 0.0,
         material,
         tolerance: Some(1e-6),
         fraction: 0.8,

@@ -18,6 +18,7 @@ mod point_graph;
 mod sheets;
 mod strips;
 mod tables;
+mod tips;
 
 pub(crate) use sheets::Sheets;
 pub(crate) use tables::{CutBatch, MappedPoint, Mapping, Row, Tile};

@@ -72,13 +72,13 @@ struct Elements {
     quick: usize,
 }
 
-/// One of these: spans of the graded mesh that are so short along the crack, mm; as many cells in each
-/// direction, halved so many times along the crack; the mesh of the case with its spans divided.
+/// One of these: spans of the graded mesh that are so short along the crack, mm; as many cells in x
+/// and y; as many in each, halved so many times along the crack; the mesh of the case with its spans divided.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 enum Mesh {
     Graded(f64),
-    Equal(usize),
+    Equal([usize; 2]),
     Halved(usize, usize),
     Divided(usize),
 }
@@ -166,11 +166,11 @@ fn ours(
     toughness: Toughness,
     library: &Arc<Library>,
 ) -> Result<Contestant<'static>, BenchError> {
-    let cells = |n: usize| format!("mesh.cells=[{n}, {n}]");
+    let cells = |nx: usize, ny: usize| format!("mesh.cells=[{nx}, {ny}]");
     let (name, words, key) = match *mesh {
-        Mesh::Graded(h) => (format!("{h:.2}"), ", graded".to_string(), cells(64)),
-        Mesh::Equal(n) => (n.to_string(), String::new(), cells(n)),
-        Mesh::Halved(n, times) => (format!("{n}-r{times}"), format!(", refined {times}×"), cells(n)),
+        Mesh::Graded(h) => (format!("{h:.2}"), ", graded".to_string(), cells(64, 64)),
+        Mesh::Equal([nx, ny]) => (ny.to_string(), String::new(), cells(nx, ny)),
+        Mesh::Halved(n, times) => (format!("{n}-r{times}"), format!(", refined {times}×"), cells(n, n)),
         Mesh::Divided(n) => (n.to_string(), String::new(), format!("mesh.subdivide={n}")),
     };
     let set = [&problem.set[..], &[SAFETY.to_string(), key]].concat();

@@ -6,11 +6,11 @@ use std::collections::BTreeMap;
 use super::cut::{EdgesInSpans, PointBox, Rules, cut_spans, edges_in_spans};
 use super::sheets::Gaps;
 use super::tables::{CutPoint, MappedPoint, Mapping, first_function, tiles};
+use super::tips::lengthened;
 use super::{Lattice, STRIP_ROWS, directions, fills_lattice};
 use crate::linear_algebra::lane::{LANES, Lane};
 use crate::scene::edges::BoundaryEdge;
-use crate::scene::shape::Segment;
-use crate::scene::{Body, Crack, Shape};
+use crate::scene::{Body, Shape};
 use crate::splines::nurbs::NurbsPatch;
 use crate::splines::patch::Patch;
 
@@ -25,7 +25,7 @@ impl Lattice {
         let mut lattice = Self { strip_rows, ..Self::of_tables(patch, body) };
         let mapped = patch.geometry.is_some();
         let fills = fills_lattice(mapped, &body.shape);
-        let slits: Vec<Segment> = body.slits().flat_map(Crack::segments).collect();
+        let slits = lengthened(patch, body);
         let mut gaps = if fills { Gaps::None } else { Gaps::Of(&body.shape) };
         if !fills {
             lattice.keep_inside(&body.shape);
