@@ -11,7 +11,7 @@ use crate::scene::{Body, Crack};
 use crate::splines::patch::Patch;
 use crate::splines::quadrature::Rule;
 
-/// Part of a span by which ends are moved on less, so that one on a knot keeps its functions for p = 1 and 2.
+/// Part of a span by which ends are moved on less: one on a knot keeps its functions for p = 1 and 2.
 const ON_A_KNOT: f64 = 0.03;
 /// Distance from the end of a slit to what it ends on, of the way that its end is moved on.
 const NEAR: f64 = 1e-3;
