@@ -27,7 +27,8 @@ pub(super) fn lengthened(patch: &Patch, body: &Body) -> Vec<Segment> {
             let way = [0, 1].map(|d| beyond[d] - to[d]);
             let at = |part: f64| [0, 1].map(|d| to[d] + part * way[d]);
             let (ahead, near) = ([at(NEAR), at(CLEAR)], NEAR * way[0].hypot(way[1]));
-            let stays = !body.shape.is_left_on(ahead) && ahead.iter().all(|at| body.shape.contains(*at));
+            let holds = |at: &[f64; 2]| body.shape.contains(*at) && patch.locate(*at).is_some();
+            let stays = !body.shape.is_left_on(ahead) && ahead.iter().all(holds);
             let meets = |other: &Segment| {
                 cross([at(-NEAR), ahead[1]], *other)
                     || other.iter().any(|end| distance_to_segment(*end, to, ahead[1]) <= near)
@@ -87,6 +88,9 @@ mod tests {
             let segments: Vec<Segment> = drawn.segments().collect();
             assert_eq!(ends(vec![drawn]), segments);
         }
+        let near_the_end_of_the_mesh = slit(&[[0.0, 0.1], [0.91, 0.1]]);
+        let all = Body { cracks: vec![near_the_end_of_the_mesh], ..Body::at_rest("plate", "glass", Shape::Patch) };
+        assert_eq!(lengthened(&patch, &all), [[[0.0, 0.1], [0.91, 0.1]]]);
         let opposite = [slit(&[[0.0, 0.2], [0.45, 0.2]]), slit(&[[0.5, 0.2], [1.0, 0.2]])];
         assert_eq!(ends(opposite.to_vec()), [[[0.0, 0.2], [0.45, 0.2]], [[0.5, 0.2], [1.0, 0.2]]]);
     }
