@@ -15,7 +15,7 @@ use crate::splines::quadrature::Rule;
 const ON_A_KNOT: f64 = 0.03;
 /// Distance from the end of a slit to what it ends on, of the way that its end is moved on.
 const NEAR: f64 = 1e-3;
-/// Part of a span by which ends are moved on less: on a knot one keeps its functions for p = 1 and 2.
+/// Part of that way that has to be free of other slits and of the boundary: slits may come from two sides.
 const CLEAR: f64 = 2.0;
 
 /// The straight parts of the slits of a body (m), with their free ends moved on.
