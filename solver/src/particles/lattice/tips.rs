@@ -17,35 +17,43 @@ const ON_A_KNOT: f64 = 0.03;
 const NEAR: f64 = 1e-3;
 /// Part of that way that has to be free of other slits and of the boundary: slits may come from two sides.
 const CLEAR: f64 = 2.0;
+/// Distance from an end at which the span ahead of it is measured, of the length of the segment.
+const AHEAD: f64 = 1e-6;
 
 /// The straight parts of the slits of a body (m), with their free ends moved on.
 pub(super) fn lengthened(patch: &Patch, body: &Body) -> Vec<Segment> {
     let drawn: Vec<Segment> = body.slits().flat_map(Crack::segments).collect();
     let end = |number: usize, [from, to]: Segment| {
-        let others = || drawn.iter().enumerate().filter(|(other, _)| *other != number).map(|(_, other)| other);
-        let beyond = moved_on(patch, body, [from, to]).filter(|beyond| {
-            let way = [0, 1].map(|d| beyond[d] - to[d]);
-            let at = |part: f64| [0, 1].map(|d| to[d] + part * way[d]);
-            let (ahead, near) = ([at(NEAR), at(CLEAR)], NEAR * way[0].hypot(way[1]));
-            let holds = |at: &[f64; 2]| body.shape.contains(*at) && patch.locate(*at).is_some();
-            let stays = !body.shape.is_left_on(ahead) && ahead.iter().all(holds);
-            let meets = |other: &Segment| {
-                cross([at(-NEAR), ahead[1]], *other)
-                    || other.iter().any(|end| distance_to_segment(*end, to, ahead[1]) <= near)
-            };
-            stays && !others().any(meets)
-        });
+        let others = drawn.iter().enumerate().filter(|(other, _)| *other != number).map(|(_, other)| other);
+        let beyond = moved_on(patch, body, [from, to]);
+        let beyond = beyond.filter(|beyond| is_free(patch, body, [to, *beyond], others));
         fault!("slits-end-where-drawn", beyond => None).unwrap_or(to)
     };
     let both = |(number, &[from, to]): (usize, &Segment)| [end(number, [to, from]), end(number, [from, to])];
     drawn.iter().enumerate().map(both).collect()
 }
 
+/// Whether there is nothing but material on the way of an end, and as far again.
+fn is_free<'a>(
+    patch: &Patch,
+    body: &Body,
+    [end, beyond]: Segment,
+    mut others: impl Iterator<Item = &'a Segment>,
+) -> bool {
+    let way = [0, 1].map(|d| beyond[d] - end[d]);
+    let at = |part: f64| [0, 1].map(|d| end[d] + part * way[d]);
+    let (ahead, near) = ([at(NEAR), at(CLEAR)], NEAR * way[0].hypot(way[1]));
+    let holds = |at: &[f64; 2]| body.shape.contains(*at) && patch.locate(*at).is_some();
+    let touches = |other: &Segment| other.iter().any(|at| distance_to_segment(*at, end, ahead[1]) <= near);
+    let meets = |other: &Segment| cross([at(-NEAR), ahead[1]], *other) || touches(other);
+    ahead.iter().all(holds) && !body.shape.is_left_on(ahead) && !others.any(meets)
+}
+
 /// Where the end `to` of a segment is moved on to; `None` outside the patch.
 fn moved_on(patch: &Patch, body: &Body, [from, to]: Segment) -> Option<[f64; 2]> {
     let along = [0, 1].map(|d| to[d] - from[d]);
     let length = along[0].hypot(along[1]);
-    let ahead = [0, 1].map(|d| to[d] + 1e-6 * along[d]);
+    let ahead = [0, 1].map(|d| to[d] + AHEAD * along[d]);
     let [x, y] = [[1.0, 0.0], [0.0, 1.0]].map(|axis| patch.span_across(ahead, axis));
     let per_span = [along[0] / (length * x?), along[1] / (length * y?)]; // spans per m
     let d = usize::from(per_span[1].abs() > per_span[0].abs());
@@ -60,7 +68,7 @@ mod tests {
     use approx::assert_relative_eq;
 
     use super::*;
-    use crate::scene::{CrackKind, Mesh, Shape};
+    use crate::scene::{CrackKind, Layout, Mesh, Shape};
 
     #[test]
     fn free_ends_are_moved_on_and_others_stay() {
@@ -73,8 +81,8 @@ mod tests {
             let body = Body { cracks: slits, ..Body::at_rest("plate", "glass", shape.clone()) };
             lengthened(&patch, &body)
         };
-        let way = 0.1 * (Rule::new(crate::scene::Layout::Gauss, 2).points[1] - ON_A_KNOT);
-        // from the edge to a tip at any angle, and across a corner
+        let way = 0.1 * (Rule::new(Layout::Gauss, 2).points[1] - ON_A_KNOT);
+        // a free end along the mesh, and one at an angle behind a corner
         assert_relative_eq!(ends(vec![slit(&[[0.0, 0.5], [0.35, 0.5]])])[0][1][0], 0.35 + way);
         let [_, [x, y]] = ends(vec![slit(&[[0.0, 0.2], [0.1, 0.2], [0.4, 0.6]])])[1];
         assert_relative_eq!((x - 0.4).hypot(y - 0.6), way, epsilon = 1e-12);
