@@ -42,7 +42,7 @@ pub struct Plot {
     pub id: String,
     /// Title above the figure.
     pub title: String,
-    /// What was run.
+    /// Text below the figure: what was run, and how.
     pub caption: String,
     /// A sentence computed from the numbers.
     pub reading: String,
@@ -57,7 +57,7 @@ pub struct Grid {
     pub title: String,
     /// Names of the columns.
     pub head: Vec<String>,
-    /// Rows of cells.
+    /// Rows of the table, with a cell for each column.
     pub rows: Vec<Vec<String>>,
     /// What to know about it.
     pub note: String,
@@ -66,14 +66,14 @@ pub struct Grid {
 /// Something in a section.
 #[derive(Debug, Clone)]
 pub enum Exhibit {
-    /// A figure.
+    /// A figure with its caption and reading.
     Plot(Plot),
-    /// A table.
+    /// A table with its title and note.
     Grid(Grid),
 }
 
 impl Exhibit {
-    /// A table.
+    /// A table from its title, the names of its columns, its rows and its note.
     fn grid(
         title: &str,
         head: &[impl ToString],
@@ -109,7 +109,7 @@ fn range(spread: Spread) -> String {
 /// A part of the report.
 #[derive(Debug, Clone)]
 pub struct Section {
-    /// Title of the part.
+    /// Title of this part of the report.
     pub title: String,
     /// What it shows, in order.
     pub exhibits: Vec<Exhibit>,

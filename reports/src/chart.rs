@@ -27,9 +27,9 @@ const SPARSE: usize = 9;
 /// What a chart shows beside its curves.
 #[derive(Debug, Clone, Copy)]
 pub struct Marks<'a> {
-    /// Marked regions.
+    /// Regions that are shaded, such as those in which an event should fall.
     pub regions: &'a [Region],
-    /// Slopes of theory.
+    /// Triangles that show the slopes of theory.
     pub slopes: &'a [SlopeTriangle],
     /// Levels below which values mean nothing.
     pub floors: &'a [Floor],

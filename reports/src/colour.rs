@@ -22,7 +22,7 @@ pub fn level(value: f64, range: [f64; 2]) -> usize {
     ((fraction * LEVELS as f64) as usize).min(LEVELS - 1)
 }
 
-/// Colour of a level.
+/// Colour `#rrggbb` of a level, which is less than [`LEVELS`].
 pub fn level_colour(level: usize) -> String {
     colour(level as f64 / (LEVELS - 1) as f64)
 }

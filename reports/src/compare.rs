@@ -33,7 +33,7 @@ const MAJOR_TOLERANCE: f64 = 0.1;
 /// Relative change of a value without bounds that is none.
 const NO_CHANGE: f64 = 1e-6;
 
-/// How much changed.
+/// How much a record, a count or a time changed between two result sets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Change {
@@ -43,7 +43,7 @@ pub enum Change {
     Minor,
     /// A verdict, or most of what was left to the bound.
     Major,
-    /// Only in the base.
+    /// Only in the base: the new results do not have it.
     Missing,
     /// Only in the new results.
     New,
@@ -55,9 +55,9 @@ pub enum Change {
 pub enum Effect {
     /// Unchanged, or nothing says which.
     Neutral,
-    /// A gain.
+    /// The change is for the better.
     Better,
-    /// A loss.
+    /// The change is for the worse.
     Worse,
 }
 
@@ -83,9 +83,9 @@ pub struct Side {
 /// One record, compared.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Comparison {
-    /// Id of the record.
+    /// Id of the record in the new results, else in the base.
     pub id: String,
-    /// Unit of its value.
+    /// Unit of the value in the new results, else in the base.
     pub unit: String,
     /// How much its accuracy changed.
     pub accuracy: Change,
@@ -93,7 +93,7 @@ pub struct Comparison {
     pub effect: Effect,
     /// In words; empty if unchanged.
     pub why: String,
-    /// In the base.
+    /// Value and status in the base; absent if the record is new.
     pub base: Option<Side>,
     /// In the new results.
     pub new: Option<Side>,

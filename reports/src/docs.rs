@@ -72,7 +72,7 @@ fn suites(set: &ResultSet) -> String {
 
 /// Opening mark of a block, without its name.
 const OPEN: &str = "<!-- docs: ";
-/// Closing mark.
+/// Closing mark of a block.
 const CLOSE: &str = "<!-- /docs -->";
 
 /// A document with every block written again by `block`, which is given its name and what stands in it.

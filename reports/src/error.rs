@@ -17,7 +17,7 @@ pub enum ReportError {
     /// A file cannot be read, is no JSON of the expected form and schema, or cannot be rendered.
     #[error("{path}: {message}", path = path.display())]
     File {
-        /// The file at fault.
+        /// Path of the file with the error.
         path: PathBuf,
         /// What is wrong, with line and column.
         message: String,

@@ -24,9 +24,9 @@ pub const EDGE: f64 = 6.0;
 /// Nominal place of the frame on its page.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
-    /// Left side.
+    /// Distance of the frame from the left edge of the page, nominal pixels.
     pub left: f64,
-    /// Top side.
+    /// Distance of the frame from the upper edge of the page, nominal pixels.
     pub top: f64,
     /// Width of the rectangle.
     pub width: f64,

@@ -11,7 +11,7 @@ use crate::style::{AXIS, INK, REGION, TICK_SIZE, px, text, text_width};
 use crate::svg::{Drawn, Page};
 use crate::trace::{Point, meets, visible};
 
-/// Height of a label.
+/// Height of a label, nominal pixels.
 const LINE: f64 = 16.0;
 
 /// Value of the hypotenuse at its right end, in drawn units.

@@ -20,7 +20,7 @@ pub const BAND: f64 = 0.18;
 #[derive(Debug, Clone, Default)]
 pub struct Legend {
     entries: Vec<Entry>,
-    /// Height in all.
+    /// Height of the whole legend, nominal pixels.
     pub height: f64,
 }
 

@@ -13,9 +13,9 @@ use crate::view::{Counts, bounds, by_suite, runs, timing};
 /// One number, as the "custom smaller-is-better" form of benchmark dashboards takes it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Metric {
-    /// Record or run, and what was measured.
+    /// Record, run or suite, and what was measured.
     pub name: String,
-    /// Unit of the value.
+    /// Unit of the value, or what it counts, such as `s`, `iterations` or `relative error`.
     pub unit: String,
     /// The measured value.
     pub value: f64,
@@ -24,7 +24,7 @@ pub struct Metric {
     /// Largest value that is accepted, where the value is an error.
     #[serde(skip)]
     pub most: Option<f64>,
-    /// Record or run.
+    /// Id of the record, the run or the suite that the number belongs to.
     #[serde(skip)]
     pub subject: String,
     /// What was measured, if the name of the record does not say it.

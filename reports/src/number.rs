@@ -22,7 +22,7 @@ pub fn pretty(value: f64, digits: usize) -> String {
     }
 }
 
-/// `10⁻⁶` for −6.
+/// Power of ten with a raised exponent: `10⁻⁶` for −6.
 pub fn power_of_ten(exponent: i32) -> String {
     const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     let raised = |c: char| c.to_digit(10).map_or('⁻', |digit| RAISED[digit as usize]);

@@ -31,7 +31,7 @@ pub enum PaperFigure {
 }
 
 impl PaperFigure {
-    /// All of them.
+    /// All figures of the paper that are reproduced, in its order.
     pub const ALL: [Self; 5] =
         [Self::ElasticEnergy, Self::FractureEnergy, Self::PlatePictures, Self::RingsEnergy, Self::RingsPictures];
 

@@ -21,10 +21,10 @@ const ENDS: [&str; 2] = [" on the finest mesh", " with the smallest step"];
 /// Digits of a number, for a table or for reading: `plain` or `pretty`.
 pub type Show = fn(f64, usize) -> String;
 
-/// One row.
+/// One row of the table: an order of convergence, and the error that falls with it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rate<'a> {
-    /// The order.
+    /// Record of the observed order.
     pub record: &'a Record,
     /// What falls at this order: `displacement error in L2`.
     pub norm: &'a str,
@@ -81,7 +81,7 @@ impl Rate<'_> {
         }
     }
 
-    /// Order of theory.
+    /// Order of theory as text; `none` if the record has no reference value.
     fn theory(&self, show: Show) -> String {
         let value = self.record.reference.as_ref().and_then(|r| r.value);
         value.map_or_else(|| "none".to_string(), |v| show(v, ORDER_DIGITS))
@@ -92,7 +92,7 @@ impl Rate<'_> {
         self.record.value.map_or("none".to_string(), |value| shown(self.record, value, ORDER_DIGITS, show))
     }
 
-    /// Accepted orders.
+    /// Bounds of the accepted order as text.
     fn band(&self, show: Show) -> String {
         bounds(&self.record.accept, show)
     }

@@ -12,7 +12,7 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("figure {figure}: {message}")]
 pub struct FigureError {
-    /// Id of the figure.
+    /// Id of the figure that cannot be drawn.
     pub figure: String,
     /// Why, with the series and its column.
     pub message: String,

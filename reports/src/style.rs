@@ -15,15 +15,15 @@ pub const WIDTH: f64 = 720.0;
 pub const LABEL_SIZE: f64 = 13.0;
 /// Size of tick labels and region labels.
 pub const TICK_SIZE: f64 = 12.0;
-/// Width of a curve.
+/// Width of a curve, nominal pixels.
 pub const CURVE_WIDTH: f64 = 1.8;
-/// Colour of text.
+/// Colour of all text in a figure.
 pub const INK: RGBColor = RGBColor(0x26, 0x26, 0x26);
-/// Axis lines.
+/// Colour of the lines of axes and of the outlines of guides.
 pub const AXIS: RGBColor = RGBColor(0x59, 0x59, 0x59);
-/// Grid lines.
+/// Colour of the grid lines.
 pub const GRID: RGBColor = RGBColor(0xe6, 0xe6, 0xe6);
-/// Marked regions.
+/// Colour of marked regions and guides, which are drawn translucent.
 pub const REGION: RGBColor = RGBColor(0x8c, 0x8c, 0x8c);
 
 /// Nominal pixels in drawing units.
@@ -72,10 +72,10 @@ pub fn text(size: f64, colour: RGBColor, horizontal: HPos, vertical: VPos) -> Te
     FontDesc::from(("sans-serif", size * SCALE)).color(&colour).pos(Pos::new(horizontal, vertical))
 }
 
-/// Shape of a marker.
+/// Shape of the marker at a point of a curve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Marker {
-    /// A filled disc.
+    /// Disc around the point.
     Circle,
     /// A square with sides along the axes.
     Square,
@@ -111,7 +111,7 @@ pub struct Look {
     pub colour: RGBColor,
     /// Lengths of dashes and gaps in nominal pixels; empty for a solid line.
     pub dashes: &'static [f64],
-    /// Marker, if any.
+    /// Marker at points of the curve; absent if it has none.
     pub marker: Option<Marker>,
 }
 

@@ -14,11 +14,11 @@ const UNCERTAINTY_DIGITS: usize = 2;
 /// What a record that holds was compared with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Basis {
-    /// A closed form.
+    /// A closed form, unless its value is zero.
     ClosedForm,
     /// A theorem or an asymptotic rate.
     Theory,
-    /// Published numbers.
+    /// Numbers from a publication.
     Literature,
     /// Another code, which may be one of this project.
     IndependentCode,
@@ -42,7 +42,7 @@ pub const BASES: [(Basis, &str); 7] = [
 ];
 
 impl Basis {
-    /// That of a record.
+    /// Basis of a record, by the kind and value of its reference and by how its bounds were chosen.
     pub fn of(record: &Record) -> Self {
         let zero = record.reference.as_ref().is_some_and(|reference| reference.value == Some(0.0));
         match record.reference.as_ref().map(|reference| reference.kind) {
@@ -68,16 +68,16 @@ pub struct Counts {
     pub known_limit: usize,
     /// Outside bounds and limits.
     pub fail: usize,
-    /// Broke down.
+    /// Broke down, or could not be measured.
     pub error: usize,
-    /// Not bounded.
+    /// Not bounded, or its reference is too uncertain or its bounds are too wide to decide.
     pub info: usize,
     /// Passes by what they were compared with, in the order of [`BASES`].
     pub passes: [usize; BASES.len()],
 }
 
 impl Counts {
-    /// Counts records.
+    /// Counts the records of each status.
     pub fn of<'a>(records: impl IntoIterator<Item = &'a Record>) -> Self {
         let mut counts = Self::default();
         for record in records {
@@ -149,7 +149,7 @@ impl Counts {
     }
 }
 
-/// A status in words.
+/// Name of a status for people, such as `known limit`.
 pub fn word(status: Status) -> &'static str {
     word_and_symbol(status).0
 }

@@ -34,7 +34,7 @@ pub struct Field<'a> {
 /// Points, cells and fields.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Piece<'a> {
-    /// Positions, m.
+    /// Positions `[x, y]` of the points, m.
     pub points: &'a [[f64; 2]],
     /// Cells between the points.
     pub cells: Cells<'a>,

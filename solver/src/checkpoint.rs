@@ -36,12 +36,12 @@ enum Way<'a> {
 }
 
 impl<'a> Archive<'a> {
-    /// To be filled.
+    /// An empty archive, into which a state is written.
     pub(crate) fn writer() -> Self {
         Self(Way::Out(Vec::new()))
     }
 
-    /// To be read.
+    /// An archive over stored bytes, from which a state is read.
     pub(crate) fn reader(bytes: &'a [u8]) -> Self {
         Self(Way::In(bytes))
     }

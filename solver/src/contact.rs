@@ -73,7 +73,7 @@ const NEAR: f64 = 0.1;
 /// What contact took and gave so far, J per metre of thickness.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactLedger {
-    /// Energy lost.
+    /// Energy that bodies lost to contact, J/m; energy stored in the contact potential counts as lost.
     pub loss: f64,
     /// The part of it that friction took.
     pub friction: f64,

@@ -67,9 +67,9 @@ const SEPARATE: f64 = 1e-14;
 /// Counters of the phase-field solver.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PhaseFieldCounts {
-    /// Systems solved.
+    /// Number of linear systems that were solved so far.
     pub solves: usize,
-    /// Iterations in all.
+    /// Number of iterations in all these solves; a direct solve counts as one.
     pub iterations: usize,
 }
 

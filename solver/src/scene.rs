@@ -24,10 +24,10 @@ pub use shape::Shape;
 pub use time::TimeFactor;
 pub use toughness::{Anisotropy, RandomToughness};
 
-/// One simulation.
+/// Everything that one simulation models and records, in SI units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
-    /// Title, for people.
+    /// Title of the scene for people; the solver does not use it.
     pub title: String,
     /// Background spline mesh.
     pub mesh: Mesh,
@@ -35,7 +35,7 @@ pub struct Scene {
     pub analysis: Analysis,
     /// Tolerances of the linear solvers.
     pub solver: SolverSettings,
-    /// Materials by name.
+    /// Materials of the bodies, by the names with which bodies refer to them.
     pub materials: BTreeMap<String, Material>,
     /// Bodies made of material points.
     pub bodies: Vec<Body>,
@@ -45,11 +45,11 @@ pub struct Scene {
     pub boundaries: Vec<Boundary>,
     /// Whether it starts from the static state under the loads and conditions at t = 0 (total frame).
     pub equilibrium: bool,
-    /// What is recorded.
+    /// Results that the run records.
     pub output: Output,
 }
 
-/// Plane state.
+/// Plane state: whether the strain or the stress out of the plane is zero.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Plane {
     /// No out-of-plane strain.
@@ -67,10 +67,10 @@ pub enum Frame {
     Updated,
 }
 
-/// Strain measure.
+/// Strain measure from which the stress follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kinematics {
-    /// Linear strain.
+    /// Linear strain: the symmetric part of the displacement gradient.
     Small,
     /// Hencky strain from the deformation gradient.
     Finite,
@@ -95,43 +95,44 @@ pub enum Transfer {
 /// Mass matrix of the control points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mass {
-    /// Row sums.
+    /// Diagonal matrix with the row sums of the consistent one.
     Lumped,
-    /// Full matrix.
+    /// Full matrix `M_IJ = Σ_p m_p N_I(x_p) N_J(x_p)` of the material points p.
     Consistent,
 }
 
-/// Time step.
+/// How the length of the time steps is chosen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TimeStep {
     /// `safety` times the critical step of the operator.
     Auto,
-    /// Given, in s.
+    /// Largest length of a step, s. Steps are shortened until a whole number of them fits between two
+    /// samples.
     Fixed(f64),
 }
 
 /// Plane state, frame, times, integration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Analysis {
-    /// Plane state.
+    /// Plane strain or plane stress.
     pub plane: Plane,
-    /// Thickness, m.
+    /// Thickness of all bodies out of the plane, m.
     pub thickness: f64,
     /// Frame of the shape functions.
     pub frame: Frame,
-    /// Strain measure.
+    /// Strain measure, for small or for finite strains.
     pub kinematics: Kinematics,
     /// End of the simulated time, s.
     pub end_time: f64,
-    /// Time step.
+    /// How the length of the time steps is chosen.
     pub time_step: TimeStep,
     /// Fraction of the critical step used by [`TimeStep::Auto`].
     pub safety: f64,
     /// Transfer of the updated frame.
     pub transfer: Transfer,
-    /// Mass matrix.
+    /// Mass matrix of the control points, lumped or consistent.
     pub mass: Mass,
-    /// Gravity, m/s².
+    /// Acceleration of gravity in x and y at a time factor of 1, m/s².
     pub gravity: [f64; 2],
     /// Its factor over time.
     pub gravity_time: TimeFactor,
@@ -160,7 +161,7 @@ pub enum PhaseFieldInterval {
 pub struct SolverSettings {
     /// Error of the phase field in the energy norm over 2 l0: see [`crate::phase_field`].
     pub phase_field_tolerance: f64,
-    /// Which solver.
+    /// Method that solves the linear system of the phase field.
     pub phase_field_solver: PhaseFieldSolver,
     /// How often it solves: see [`crate::phase_field`].
     pub phase_field_interval: PhaseFieldInterval,
@@ -186,13 +187,13 @@ impl Contact {
 }
 
 impl Default for Contact {
-    /// Without friction.
+    /// Contact without friction, without fragments, and without contact of a body with itself.
     fn default() -> Self {
         Self { friction: 0.0, fragments: false, self_contact: false, stiffness: None }
     }
 }
 
-/// What is recorded.
+/// Which results a run records, and at which times.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Output {
     /// Rows of the history after the first.
@@ -219,7 +220,7 @@ impl Output {
 /// A place of a body whose motion and stress are recorded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Probe {
-    /// Name in columns.
+    /// Name of the probe, which becomes part of the names of its columns.
     pub name: String,
     /// Position at t = 0, m.
     pub at: [f64; 2],

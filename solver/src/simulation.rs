@@ -27,7 +27,7 @@ use frame::{Bodies, either};
 pub struct Extent {
     /// What is modelled: `momentum`, `phase field`, ….
     pub models: Vec<String>,
-    /// Material points.
+    /// Number of material points of all bodies that deform.
     pub particles: usize,
     /// Control points with mass.
     pub control_points: usize,
@@ -43,7 +43,7 @@ const SPARE: [f64; 2] = [0.801, 0.95];
 /// By how much that part is above the safety of a scene: the first step is as long as that.
 const ABOVE: f64 = 1.001;
 
-/// A running scene.
+/// A scene during its run: its bodies at the present step, the plan of the steps, and the warnings so far.
 #[derive(Debug)]
 pub struct Simulation {
     frame: Bodies,
@@ -107,7 +107,7 @@ impl Simulation {
         Ok(Self { frame, plan, parts, spare, warnings, steps, initial, energy_in, warned, failed, tolerance })
     }
 
-    /// Steps and samples.
+    /// Planned time steps and samples of the run.
     pub fn plan(&self) -> &TimePlan {
         &self.plan
     }
@@ -117,7 +117,7 @@ impl Simulation {
         &self.warnings
     }
 
-    /// Steps taken.
+    /// Number of planned steps that were taken so far.
     pub fn steps(&self) -> usize {
         self.steps
     }
@@ -160,7 +160,7 @@ impl Simulation {
         self.plan.step / self.parts as f64
     }
 
-    /// Time, s.
+    /// Time since the start of the run, s.
     pub fn time(&self) -> f64 {
         self.steps as f64 * self.plan.step
     }

@@ -68,7 +68,7 @@ use record::{BenchRecord, BenchSet, NamedPeer, SCHEMA};
 pub struct Settings<'a> {
     /// Few meshes and repetitions.
     pub quick: bool,
-    /// Most threads.
+    /// Largest number of threads that a benchmark may use.
     pub threads: usize,
     /// Folder with `verification/cases` and `reference-data`.
     pub workspace: PathBuf,
@@ -126,7 +126,7 @@ impl Settings<'_> {
 /// A benchmark that could not be carried out.
 #[derive(Debug, Error)]
 pub enum BenchError {
-    /// A run broke down.
+    /// A study or a run failed: it broke down, was stopped, or could not be carried out.
     #[error(transparent)]
     Study(#[from] StudyError),
     /// A case file is wrong.
@@ -144,9 +144,9 @@ pub enum BenchError {
     /// The program of a peer did not do its part.
     #[error("peer {command}: {message}")]
     Peer {
-        /// Its command line.
+        /// Command line of the peer, as one string.
         command: String,
-        /// What went wrong.
+        /// Reason in words, for example that the program cannot be started or takes too long.
         message: String,
     },
 }

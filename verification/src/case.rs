@@ -69,11 +69,11 @@ impl FromStr for Tier {
 pub struct Check {
     /// Last part of the ids of its records: it stays when the words of `quantity` change.
     pub id: String,
-    /// Ids it had before.
+    /// Earlier values of `id`, by which records of older results are still found.
     pub formerly: Vec<String>,
-    /// Quantity in words.
+    /// Name of the measured quantity in words.
     pub quantity: String,
-    /// Unit of the value.
+    /// Unit of the reported value; `1` if the file gives none.
     pub unit: String,
     /// Name of the measure; absent where the study itself measures `quantity`.
     pub measure: Option<String>,
@@ -81,7 +81,7 @@ pub struct Check {
     pub column: Option<String>,
     /// Reference curve or value: `folder/quantity`.
     pub reference: Option<String>,
-    /// Window in time, s.
+    /// Start and end of the time that is measured, s; infinite where the file sets no limit.
     pub window: [f64; 2],
     /// Position or threshold the measure needs, SI.
     pub at: Option<f64>,
@@ -176,10 +176,10 @@ pub struct Variant {
     pub energy_factor: Option<f64>,
 }
 
-/// A case of a suite.
+/// A verification case, as its file states it: a claim, what is run, and how it is checked.
 #[derive(Debug, Clone)]
 pub struct Case {
-    /// Suite: the folder.
+    /// Suite of the case: the name of the folder that holds its file.
     pub suite: String,
     /// Name: the file without ending.
     pub name: String,
@@ -193,13 +193,14 @@ pub struct Case {
     pub seconds: f64,
     /// Study that runs it.
     pub study: String,
-    /// Label in figures.
+    /// Name of the case in legends and titles; empty if the file gives none.
     pub label: String,
     /// Energies of the run times this are those of the whole body: 2 for a half model.
     pub energy_factor: f64,
     /// What differs from the cited source.
     pub deviations: Vec<String>,
-    /// What is modelled.
+    /// Models in use, such as `momentum`, `phase field` or `contact`; found from the scene if the file gives
+    /// none.
     pub models: Vec<String>,
     /// Numbers by name, for formulas.
     pub values: Vec<(String, Amount)>,

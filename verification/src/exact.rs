@@ -99,7 +99,7 @@ pub enum Held {
     Rollers,
 }
 
-/// All solutions.
+/// Every exact solution that a module of this folder registers.
 pub fn all() -> impl Iterator<Item = &'static Solution> {
     REGISTERED.into_iter().flatten()
 }
@@ -119,13 +119,13 @@ fn unit_material(poisson_ratio: f64) -> Material {
 pub trait ExactSolution: Send + Sync {
     /// Material of the body.
     fn material(&self) -> Material;
-    /// Plane state.
+    /// Plane state, strain or stress, for which the fields hold.
     fn plane(&self) -> Plane;
-    /// Displacement, m.
+    /// Displacement `[u_x, u_y]`, m.
     fn displacement(&self, position: [f64; 2], time: f64) -> [f64; 2];
     /// Gradient of the displacement, `∂u_i/∂x_j`.
     fn displacement_gradient(&self, position: [f64; 2], time: f64) -> [[f64; 2]; 2];
-    /// Velocity, m/s.
+    /// Velocity `[v_x, v_y]`, m/s.
     fn velocity(&self, position: [f64; 2], time: f64) -> [f64; 2];
     /// Acceleration, m/s².
     fn acceleration(&self, position: [f64; 2], time: f64) -> [f64; 2];
@@ -143,12 +143,12 @@ pub trait ExactSolution: Send + Sync {
 /// A phase field that solves the equation of its model ([`fracture`]) exactly, with AT2 `[4 l0 (1 − k) H/Gc
 /// + 1] c − 4 l0² Δc = s`.
 pub trait ExactPhase: Sync {
-    /// Phase field.
+    /// Phase field c, from 0 in broken to 1 in intact material.
     fn value(&self, position: [f64; 2], time: f64) -> f64;
-    /// Its gradient, 1/m.
+    /// Gradient `[∂c/∂x, ∂c/∂y]` of the phase field, 1/m.
     fn gradient(&self, position: [f64; 2], time: f64) -> [f64; 2];
     /// Driving energy H, J/m³.
     fn history(&self, position: [f64; 2], time: f64) -> f64;
-    /// Source s.
+    /// Source s on the right-hand side of the phase-field equation, without a unit.
     fn source(&self, position: [f64; 2], time: f64) -> f64;
 }

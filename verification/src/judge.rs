@@ -36,7 +36,7 @@ use verdict::{Balance, Outcome, ReferenceUsed, Verdict};
 /// A quantity of the plate.
 #[derive(Debug, Clone, Copy)]
 pub struct Quantity {
-    /// Key in `[curves]`.
+    /// Key of the quantity in the table `[curves]` of `submission.toml`.
     pub key: &'static str,
     /// Name of the quantity in words.
     pub words: &'static str,
@@ -73,11 +73,11 @@ pub(crate) const TIP_Y: usize = 5;
 pub struct Benchmark {
     /// Name under which results ask for it.
     pub name: &'static str,
-    /// What it is.
+    /// Description of the benchmark in a few words.
     pub what: &'static str,
 }
 
-/// All benchmarks.
+/// All benchmarks that a submission can name.
 pub const BENCHMARKS: [Benchmark; 13] = [
     Benchmark { name: "plate", what: "impact-loaded plate and its family: a crack that runs and branches" },
     Benchmark { name: "kalthoff", what: "test of Kalthoff and Winkler, elastic or with a crack in shear (AT1, AT2)" },
@@ -100,7 +100,7 @@ const BALANCE: f64 = 0.02;
 /// A verdict with the curves behind it.
 #[derive(Debug, Clone)]
 pub struct Judged {
-    /// The verdict.
+    /// Outcome on the whole, with every comparison behind it.
     pub verdict: Verdict,
     /// Curves as they were judged, by quantity.
     pub curves: [Option<Curve>; 6],

@@ -29,11 +29,11 @@ pub use tip::{chord, fitted_speed, grown};
 pub struct Run<'a> {
     /// Name of the variant.
     pub name: &'a str,
-    /// The scene.
+    /// Scene that was run.
     pub scene: &'a Scene,
-    /// Its history.
+    /// History of the run: a column for each quantity, a row for each sample.
     pub history: &'a Table,
-    /// Its pictures.
+    /// Pictures at the frames of the scene, in the order of time.
     pub frames: &'a [Picture],
     /// Factor from its energies to those of the whole body.
     pub energy_factor: f64,
@@ -77,7 +77,7 @@ impl Named<'_> {
 }
 
 impl Run<'_> {
-    /// Times, s.
+    /// Times of the rows of the history, s.
     pub fn times(&self) -> Result<&[f64], String> {
         self.history.column("time_s").ok_or_else(|| "the history has no column time_s".to_string())
     }

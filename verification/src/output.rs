@@ -86,7 +86,7 @@ impl OutputFolder {
         Ok(folder)
     }
 
-    /// Where it is.
+    /// Path of this folder, as it was given.
     pub fn path(&self) -> &Path {
         &self.path
     }

@@ -33,17 +33,17 @@ pub struct ReferenceValue {
     pub id: String,
     /// Name of the value within its source.
     pub name: String,
-    /// SI unit.
+    /// SI unit of the value, such as `m/s`; `1` for a plain number.
     pub unit: &'static str,
-    /// Value, SI.
+    /// The number that the source gives, in the SI unit.
     pub value: f64,
     /// Half width of its uncertainty, SI; absent where none is known.
     pub uncertainty: Option<f64>,
-    /// What it is.
+    /// Remark of the source file on this number, such as its meaning or how it was found.
     pub note: String,
     /// Citation of its source.
     pub citation: String,
-    /// Kind, for records.
+    /// Kind of reference that a record states when it is held against this number.
     pub kind: ReferenceKind,
 }
 
@@ -54,19 +54,19 @@ pub struct ReferenceBand {
     pub id: String,
     /// Name of the band within its source.
     pub name: String,
-    /// SI unit.
+    /// SI unit of both ends, such as `s`; `1` for plain numbers.
     pub unit: &'static str,
-    /// Lower end, SI.
+    /// Lower end of the range, in the SI unit.
     pub min: f64,
-    /// Upper end, SI.
+    /// Upper end of the range, in the SI unit.
     pub max: f64,
     /// Folders of the sources it was put together from.
     pub sources: Vec<String>,
-    /// What it is.
+    /// Remark of the source file on this range, such as its meaning or how it was found.
     pub note: String,
     /// Citation of its source.
     pub citation: String,
-    /// Kind, for records.
+    /// Kind of reference that a record states when it is held against this range.
     pub kind: ReferenceKind,
 }
 

@@ -39,11 +39,11 @@ pub const FRAME_PIXELS: usize = 400;
 /// How far a run has come.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Progress {
-    /// Steps taken.
+    /// Number of time steps taken so far.
     pub step: usize,
-    /// Steps in all.
+    /// Number of time steps of the whole run.
     pub steps: usize,
-    /// Simulated time, s.
+    /// Simulated time that the run has reached, s.
     pub time: f64,
 }
 

@@ -47,9 +47,9 @@ use crate::record::{Figure, Reference, ReferenceKind};
 pub struct Measurement {
     /// Variant it belongs to; empty if there is one only.
     pub variant: String,
-    /// Quantity in words.
+    /// Name of the measured quantity in words; checks refer to it by this name.
     pub quantity: String,
-    /// Unit of the value.
+    /// Unit of the value and of its reference.
     pub unit: String,
     /// Measured value; none in a plan, or if the event did not occur.
     pub value: Option<f64>,
@@ -157,13 +157,13 @@ fn projected_on(
 /// A study that could not be carried out.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum StudyError {
-    /// A run broke down.
+    /// A simulation that the study runs broke down.
     #[error(transparent)]
     Breakdown(#[from] fisura::simulation::breakdown::Breakdown),
     /// The case is over its time.
     #[error(transparent)]
     Stopped(#[from] crate::watch::Stopped),
-    /// Something else.
+    /// Another reason why the study cannot be carried out, in words.
     #[error("{0}")]
     Other(String),
 }

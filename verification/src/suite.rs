@@ -37,7 +37,7 @@ use supervise::{Ended, Supervisor};
 /// Where and how to run.
 #[derive(Debug, Clone)]
 pub struct Options<'a> {
-    /// Results folder.
+    /// Folder into which the results are written.
     pub out: Arc<OutputFolder>,
     /// Folder of reference data.
     pub reference_data: &'a Path,
@@ -55,7 +55,7 @@ pub struct Options<'a> {
 
 /// Told what is going on, by several threads at once; does nothing about what it does not define.
 pub trait Progress: Sync {
-    /// A case starts.
+    /// Called when a case starts, also if its result is taken up from an interrupted run.
     fn started(&self, _case: &Case) {}
     /// The finished fraction of the case.
     fn advanced(&self, _case: &Case, _fraction: f64) {}
@@ -82,7 +82,7 @@ pub enum VerifyError {
     /// An interrupted run could be gone on with, and this one would remove what it finished.
     #[error("{} contains {cases} finished cases of an interrupted run in partial/ that this run does not resume", folder.display())]
     Interrupted {
-        /// Results folder.
+        /// Path of the results folder.
         folder: PathBuf,
         /// Number of finished cases that would be lost.
         cases: usize,
@@ -96,7 +96,7 @@ pub struct CaseOutcome {
     pub records: Vec<Record>,
     /// Figures of the study itself.
     pub figures: Vec<Figure>,
-    /// Runs of scenes.
+    /// What figures need to know of each scene that was run; empty unless the case has a `scene` study.
     pub runs: Vec<RunInfo>,
 }
 
@@ -177,37 +177,4 @@ fn inputs(cases: &[Case]) -> BTreeMap<String, String> {
 /// Writes `series/<stem>.csv`; a stem such as `timing/bar` has a folder of its own.
 fn write_series(out: &OutputFolder, stem: &str, table: &crate::output::history::Table) -> Result<(), VerifyError> {
     Ok(out.write_table(&format!("series/{stem}.csv"), table)?)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::prepare::prepare;
-    use super::*;
-    use crate::record::Status;
-
-    #[test]
-    fn a_panic_is_an_error_for_every_record_of_the_case() {
-        let text = "claim = \"c\"\nseconds = 1\nstudy = \"basis\"\n[[check]]\nid = \"unity\"\n\
-                    quantity = \"partition of unity, largest error\"\n";
-        let case = Case::parse(Path::new("trial/case.toml"), text, &[]).unwrap();
-        let prepared = prepare(&case, &Library::default()).unwrap();
-        let supervisor = Supervisor {
-            threads: 1,
-            slow: LEAST_TIME,
-            limit: LEAST_TIME,
-            advanced: &|_| (),
-            is_slow: &|| (),
-            is_late: &|| (),
-        };
-        let ended = supervisor.run(|| -> () { panic!("planted") });
-        let Ended::Broken(message) = ended else { panic!("it ended well") };
-        let records = judge::broken(&case, &prepared, &message).records;
-        let ids: Vec<&str> = records.iter().map(|record| record.id.as_str()).collect();
-        assert_eq!(ids, ["p=1", "p=2", "p=3", "p=4"].map(|p| format!("trial/case/{p}/unity")));
-        for record in &records {
-            assert_eq!(record.status, Status::Error);
-            let message = record.message.as_deref().unwrap();
-            assert!(message.contains("planted") && message.contains("suite.rs"), "{message}");
-        }
-    }
 }

@@ -8,7 +8,7 @@ use std::process::ExitCode;
 pub enum Exit {
     /// All checks hold; what was asked is done.
     Done = 0,
-    /// A check fails.
+    /// A check fails, or what the command judges does not hold.
     CheckFailed = 1,
     /// Bad arguments or bad input.
     BadInput = 2,

@@ -15,11 +15,11 @@ use crate::exit::Exit;
 pub enum Failure {
     /// A file of a scene or a case is not valid.
     SceneFile(SceneFileError),
-    /// Anything else.
+    /// Any other failure, with a message of its own.
     Other {
-        /// Exit status.
+        /// Exit status with which the command ends.
         exit: Exit,
-        /// What is wrong.
+        /// What is wrong, in words.
         message: String,
         /// What would be right, if it is not plain from the message.
         help: Option<String>,

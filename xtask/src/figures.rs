@@ -156,7 +156,7 @@ fn animate(name: &str, title: &str, source: &Path, pictures: &[(f64, &Figure)]) 
     render_animation(name, title, &moments, (&bar.0, bar.1)).map_err(fail)
 }
 
-/// What is asked for.
+/// Figures that the user asks for: those of the paper, and others by their ids.
 struct Wanted {
     paper: Vec<PaperFigure>,
     others: Vec<String>,

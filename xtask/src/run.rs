@@ -49,7 +49,7 @@ pub struct Args {
 pub struct Interval(Option<Duration>);
 
 impl Interval {
-    /// No checkpoints.
+    /// No checkpoints are written.
     pub const NONE: Self = Self(None);
 }
 

@@ -15,9 +15,9 @@ use fisura_verification::scene_run::frame_steps;
 use crate::cli::Common;
 use crate::console;
 
-/// Material points.
+/// First part of the names of the files with material points.
 const POINTS: &str = "points";
-/// Spans of the mesh.
+/// First part of the names of the files with spans of the mesh.
 const GRID: &str = "grid";
 const KINDS: [&str; 2] = [POINTS, GRID];
 
@@ -39,7 +39,7 @@ pub struct Files<'a> {
 }
 
 impl<'a> Files<'a> {
-    /// None yet.
+    /// Files of a run of `scene` in `folder`, of which none is written yet.
     pub fn new(folder: &'a OutputFolder, scene: &'a Scene, common: &'a Common) -> Self {
         Self { folder, times: &scene.output.frames, common, failed: None }
     }

@@ -17,7 +17,7 @@ use crate::{console, progress};
 /// Parts of a second, or of a case, that bars count.
 const PARTS: f64 = 1000.0;
 
-/// Bars or lines.
+/// Shows how far a verification is: bars on a terminal, lines elsewhere.
 #[derive(Debug)]
 pub struct Watch<'a> {
     common: &'a Common,

@@ -25,7 +25,7 @@ const LINE: f64 = 20.0;
 /// Bars of one or more series side by side in named rows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BarChart {
-    /// Id of the figure.
+    /// Id of the figure: the name of its file without ending.
     pub id: String,
     /// Title, for those who cannot see it.
     pub title: String,

@@ -3,7 +3,7 @@
 use super::work_precision::{Chart, Line, at_equal_error, lines, on_finest};
 use super::{Exhibit, Records};
 
-/// One figure.
+/// Figure of the error of a motion against time; absent if there are no records of it.
 pub fn exhibit(records: Records) -> Option<Exhibit> {
     let lines = lines(records.below("motion/"));
     lines.first()?;

@@ -35,11 +35,11 @@ static RATIOS: LazyLock<Ratios> =
 /// A bound of a ratio.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Target {
-    /// At most.
+    /// The ratio has to be at most this.
     AtMost(f64),
-    /// At least.
+    /// The ratio has to be at least this.
     AtLeast(f64),
-    /// A number to know.
+    /// Nothing is asked of the ratio: it is shown only.
     None,
 }
 
@@ -57,7 +57,7 @@ impl Target {
 /// A ratio with its spread and whether its target is met; `verified` if all answers behind it hold.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Found {
-    /// In words.
+    /// Description of the ratio in words.
     pub what: String,
     /// Value: of the ratios of all rounds where all records have as many, else of medians alone.
     pub value: Spread,

@@ -11,7 +11,7 @@ use crate::series::SeriesSet;
 use crate::svg::slug;
 use crate::view::by_key;
 
-/// What is paid.
+/// Cost against which errors are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Cost {
     Time,

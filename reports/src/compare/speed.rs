@@ -29,7 +29,7 @@ pub struct SpeedChange {
     pub base_s: f64,
     /// Wall time in the new results, s.
     pub new_s: f64,
-    /// New over base.
+    /// Wall time in the new results over that in the base.
     pub ratio: f64,
     /// How much it changed.
     pub change: Change,
@@ -44,7 +44,7 @@ impl SpeedChange {
     }
 }
 
-/// Times of all runs.
+/// Wall times of two result sets, compared run by run and as a whole.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Speed {
     /// Why times are not compared; absent if they are.

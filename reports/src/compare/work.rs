@@ -20,11 +20,11 @@ const MAJOR: f64 = 0.02;
 /// How a count of one run changed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WorkChange {
-    /// The run.
+    /// Id of the run: that of its records without the check.
     pub run: String,
-    /// What is counted.
+    /// What is counted: `particle-steps` or `phase-field iterations`.
     pub what: &'static str,
-    /// In the base.
+    /// Count of the run in the base.
     pub base: u64,
     /// In the new results.
     pub new: u64,

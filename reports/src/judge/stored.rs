@@ -10,7 +10,7 @@ pub struct StoredBoard {
     pub title: &'static str,
     /// File of the drawing in the gallery.
     pub file: &'static str,
-    /// The drawing.
+    /// The drawing as the text of an SVG file.
     pub svg: &'static str,
     /// What the numbers say.
     pub sentence: &'static str,

@@ -1,6 +1,6 @@
 //! The appended block of a VTK file: for each array its size in bytes and its numbers, all little-endian.
 
-/// Arrays so far.
+/// The appended block with the arrays that were added so far.
 #[derive(Debug, Default)]
 pub(super) struct Appended {
     bytes: Vec<u8>,

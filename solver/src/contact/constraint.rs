@@ -65,7 +65,7 @@ pub struct BodyView<'a> {
     pub grid: ControlGrid,
     /// Inverse of the lumped mass, m/kg; zero where that is negligible.
     pub inverse_mass: &'a [f64],
-    /// Density, kg/m³.
+    /// Density of the undeformed material, kg/m³.
     pub density: f64,
     /// Stiffness κ of its boundary, Pa/m; none if that is rigid.
     pub stiffness: Option<f64>,
@@ -96,7 +96,7 @@ pub struct ContactConstraint {
     pub(super) bodies: [usize; 2],
     /// Column and row of the square it stands for.
     pub(super) square: [usize; 2],
-    /// Position, m.
+    /// Place between both boundaries where the impulse acts, m.
     pub(super) position: [f64; 2],
     /// Unit normal from a to b.
     pub(super) normal: [f64; 2],

@@ -23,7 +23,7 @@ const SMOOTHINGS: usize = 16;
 
 /// A point of the body.
 pub(crate) struct Place {
-    /// Where it is, m.
+    /// Present position of the point, m.
     pub position: [f64; 2],
     /// Its volume per unit thickness, m².
     pub volume: f64,

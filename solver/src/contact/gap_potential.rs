@@ -70,13 +70,13 @@ pub(crate) fn boundary_stiffness(stiffness: f64, moduli: &ElasticModuli, density
 /// A pair of opposite forces, and that of friction beside it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct GapForce {
-    /// Bodies a and b.
+    /// Numbers of the bodies a and b, of which rigid ones are counted last; a body that meets itself is both.
     pub bodies: [usize; 2],
     /// Where it acts on each, m.
     pub places: [[f64; 2]; 2],
     /// The same as the number of the arc and t on it: they move with the material.
     pub labels: [(usize, f64); 2],
-    /// Force on b, N/m.
+    /// Force of the potential on b, per unit thickness, N/m; the opposite force acts on a.
     pub force: [f64; 2],
     /// Force of friction on b, N/m; it acts on both bodies where the other does on b.
     pub friction: Option<[f64; 2]>,

@@ -72,7 +72,7 @@ pub struct Unconverged {
 pub struct ContactForce {
     /// Numbers of the bodies a and b; rigid ones are counted after the others.
     pub bodies: [usize; 2],
-    /// Where it acts, m.
+    /// Place where the force acts, m.
     pub position: [f64; 2],
     /// Force on b, per unit thickness, N/m.
     pub force: [f64; 2],
@@ -104,7 +104,7 @@ struct Iteration {
     /// Largest normal impulse, and largest change of an impulse, kg/s per unit thickness.
     largest: f64,
     change: f64,
-    /// Where that was, m.
+    /// Place of the constraint whose impulse changed most, m.
     place: [f64; 2],
 }
 

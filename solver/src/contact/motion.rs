@@ -25,7 +25,7 @@ const ROUND_OFF: f64 = 1e-9;
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[error("bodies that are about to meet approach each other by {spans:.3} spans in a step, and contact follows {MOST}")]
 pub struct TooFast {
-    /// Between them, m.
+    /// Middle of a boundary segment that approaches another body, m.
     pub place: [f64; 2],
     /// By how much they approach in a step, in spans.
     pub spans: f64,
@@ -35,9 +35,9 @@ pub struct TooFast {
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[error("a boundary is {spans:.3} spans deep in another body, and contact follows {follows:.3} there")]
 pub struct TooDeep {
-    /// Place, m.
+    /// Place on the boundary that lies in the other body, m.
     pub place: [f64; 2],
-    /// Depth, in spans.
+    /// Depth of that place in the other body, in lengths of the shortest span.
     pub spans: f64,
     /// Depth that contact follows there, in spans.
     pub follows: f64,

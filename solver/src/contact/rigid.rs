@@ -8,7 +8,7 @@ use crate::scene::{Body, Mesh, TimeFactor};
 /// The motion of a rigid body about a centre that moves on; velocity and spin share one factor in time.
 #[derive(Debug, Clone)]
 pub(crate) struct RigidMotion {
-    /// At t = 0, m.
+    /// Centre of rotation at t = 0, m.
     center: [f64; 2],
     velocity: [f64; 2],
     spin: f64,
@@ -79,7 +79,7 @@ impl RigidPose {
     }
 }
 
-/// A rigid body.
+/// A rigid body that others meet by impulses: its boundary, its motion, and where it is now.
 #[derive(Debug, Clone)]
 pub(crate) struct RigidBody {
     pub surface: Surface,
@@ -90,7 +90,7 @@ pub(crate) struct RigidBody {
 }
 
 impl RigidBody {
-    /// `body` at t = 0.
+    /// The rigid body that a scene declares as `body`, at t = 0.
     pub(crate) fn new(mesh: &Mesh, body: &Body) -> Self {
         let surface = Surface::new(mesh, body);
         let motion = RigidMotion::new(mesh, body);

@@ -41,7 +41,7 @@ pub(crate) struct Nearest {
 /// Centre of a segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Center {
-    /// Position, m.
+    /// Position of the middle of the segment, m.
     pub position: [f64; 2],
     /// Outward unit normal.
     pub normal: [f64; 2],

@@ -18,15 +18,16 @@ pub struct BodySamples {
 pub struct BodySample {
     /// Name in columns: see [`column_name`].
     pub name: String,
-    /// Mass, kg.
+    /// Mass of the body for the thickness of the scene, kg.
     pub mass: f64,
-    /// Centre of mass, m.
+    /// Present position of the centre of mass, m.
     pub center: [f64; 2],
     /// Velocity of the centre of mass, m/s.
     pub velocity: [f64; 2],
-    /// Angular velocity of the points about the centre of mass, `Σ m r × v/Σ m r²`, half a step back, rad/s.
+    /// Angular velocity about the centre of mass, `Σ m r × v/Σ m r²`, rad/s: in the updated frame of the
+    /// points, half a step back; in the total frame of the control points.
     pub spin: f64,
-    /// Kinetic energy, J.
+    /// Kinetic energy of the body for the thickness of the scene, J.
     pub kinetic: f64,
 }
 

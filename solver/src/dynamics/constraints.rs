@@ -99,7 +99,7 @@ pub(super) struct Reaction {
     pub(super) force: [[f64; 2]; 2],
     /// Velocity in the step to come, and in the last one, m/s.
     pub(super) velocity: [[f64; 2]; 2],
-    /// Work so far, J/m.
+    /// Work of the condition on the body so far, J/m.
     pub(super) work: f64,
 }
 

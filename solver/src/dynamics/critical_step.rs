@@ -22,9 +22,9 @@ const MOST: usize = 300;
 pub trait StiffnessOperator {
     /// Number of free degrees of freedom.
     fn size(&self) -> usize;
-    /// `out = K x`.
+    /// Writes `K x` to `out`: the forces that answer a displacement x.
     fn stiffness(&mut self, x: &[f64], out: &mut [f64]);
-    /// `out = M⁻¹ x`.
+    /// Writes `M⁻¹ x` to `out`: the accelerations under forces x.
     fn divide_by_mass(&mut self, x: &[f64], out: &mut [f64]);
 }
 

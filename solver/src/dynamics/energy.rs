@@ -38,13 +38,13 @@ pub(crate) struct Ledger {
 /// State of a run at a whole step. Energies in J for the thickness of the scene.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Sample {
-    /// Time, s.
+    /// Time since the start of the run, s.
     pub time: f64,
     /// Kinetic energy of the control points, J.
     pub kinetic: f64,
     /// Part of it that velocity Verlet does not conserve, J.
     pub stagger: f64,
-    /// Elastic energy, J.
+    /// Elastic energy of the material, degraded where it is cracked, J.
     pub elastic: f64,
     /// What only a fracturing body has.
     pub fracture: Option<FractureSample>,
@@ -64,11 +64,11 @@ pub struct Sample {
     pub j_integrals: Vec<(String, f64)>,
     /// What is left when every named term is added up, J.
     pub closure: f64,
-    /// Momentum, kg m/s.
+    /// Linear momentum in x and y, kg m/s.
     pub momentum: [f64; 2],
     /// Angular momentum about the origin, kg m²/s.
     pub angular_momentum: f64,
-    /// Time step, s.
+    /// Length of the last time step, s; at t = 0 that of the first step.
     pub time_step: f64,
     /// Area of every part that the bodies are in before any strain, m², if parts are counted.
     pub fragments: Option<Vec<f64>>,
@@ -104,12 +104,12 @@ pub struct ContactSample {
 /// What a condition with a name does to the body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConditionSample {
-    /// Name in columns.
+    /// Name of the condition as it stands in the names of its columns.
     name: String,
     fix: [bool; 2],
     /// Force on the body, N.
     reaction: [f64; 2],
-    /// Work so far, J.
+    /// Work of the condition on the body so far, J.
     work: f64,
 }
 
@@ -134,7 +134,7 @@ impl ConditionSample {
 /// Motion and stress at a place.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProbeSample {
-    /// Name in columns.
+    /// Name of the probe as it stands in the names of its columns.
     name: String,
     /// Displacement (m), velocity (m/s), stress `[xx, yy, xy]` (Pa).
     values: [f64; 7],

@@ -46,7 +46,7 @@ pub enum Failure {
         body: usize,
         /// Number of the condition.
         condition: usize,
-        /// Place, m.
+        /// Place on the edge where there is no material, m.
         place: [f64; 2],
     },
     /// What that condition of the body prescribes follows from what others prescribe.
@@ -80,7 +80,7 @@ pub enum Failure {
     BareBoundary {
         /// Number of the body in the scene.
         body: usize,
-        /// Place, m.
+        /// Place on the boundary where there is no material, m.
         place: [f64; 2],
     },
 }

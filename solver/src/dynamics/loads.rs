@@ -82,7 +82,7 @@ pub enum LostTraction {
 }
 
 impl LostTraction {
-    /// Where, m.
+    /// Place where the traction is lost, m: the middle of the edge if its total force or moment is wrong.
     pub(crate) fn place(self) -> [f64; 2] {
         let (Self::Bare(place) | Self::NotFinite(place) | Self::Unbalanced { place, .. }) = self;
         place
@@ -177,12 +177,12 @@ impl KickFactor {
 pub(crate) struct Gravity {
     /// At full strength, m/s².
     full: [f64; 2],
-    /// Its factor.
+    /// Factor over time by which the full strength is multiplied.
     pub factor: KickFactor,
 }
 
 impl Gravity {
-    /// That of a scene.
+    /// The gravity of a scene, with its factor over time.
     pub(crate) fn new(analysis: &Analysis) -> Self {
         Self { full: analysis.gravity, factor: KickFactor::new(analysis.gravity_time.clone()) }
     }
@@ -210,7 +210,7 @@ impl Gravity {
 pub struct NodalLoad {
     /// Control point and force at full strength per unit thickness, N/m.
     pub forces: Vec<(usize, [f64; 2])>,
-    /// Its factor.
+    /// Factor over time by which the full strength is multiplied.
     pub factor: KickFactor,
     /// If it follows the body.
     following: Option<Box<FollowingForces>>,

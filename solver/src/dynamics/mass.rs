@@ -132,7 +132,7 @@ impl MassMatrix {
         move |at| image.as_ref().map_or_else(|| self.row_sums[at] * x[at], |image| image[at])
     }
 
-    /// `½ vᵀ M v`.
+    /// `½ vᵀ M v` of a vector field v: the kinetic energy (J/m) if v is a velocity.
     pub(crate) fn half_square(&self, v: &VectorField) -> f64 {
         match &self.kind {
             MassKind::Lumped { .. } => {

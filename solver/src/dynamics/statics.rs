@@ -89,7 +89,7 @@ impl<'a> StaticSolver<'a> {
     }
 }
 
-/// `(K + s M) u`.
+/// Writes the nodal forces `(K + s M) u` (N/m) of a displacement u (m) to `out`; `shift` is s, 1/s².
 fn shifted_forces(frame: &TotalFrame, shift: f64, u: &VectorField, strips: &mut StripForces, out: &mut VectorField) {
     frame.elastic_forces(u, strips, out);
     if shift != 0.0 {

@@ -11,7 +11,7 @@ use crate::splines::quadrature::Rule;
 /// Point on the boundary of a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SurfacePoint {
-    /// Position, m.
+    /// Position on the boundary, m.
     pub position: [f64; 2],
     /// Length it stands for, m.
     pub length: f64,

@@ -14,7 +14,7 @@ const TOLERATED: f64 = 1e-6;
 /// Steps and samples of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TimePlan {
-    /// Time step, s.
+    /// Length of a planned time step, s.
     pub step: f64,
     /// Steps between samples.
     pub steps_per_sample: usize,
@@ -81,7 +81,7 @@ impl TimePlan {
         (Self { step, steps_per_sample, samples, critical }, warnings)
     }
 
-    /// Steps in all.
+    /// Number of planned steps from t = 0 to the end of the run.
     pub fn steps(&self) -> usize {
         self.samples.saturating_mul(self.steps_per_sample)
     }

@@ -49,10 +49,10 @@ const BETWEEN_STEPS: f64 = 1.0;
 /// One body in the total frame.
 #[derive(Debug, Clone)]
 pub struct TotalFrame {
-    /// Background patch.
+    /// Background patch with the shape functions of the body.
     pub patch: Patch,
     grid: ControlGrid,
-    /// Material points.
+    /// Material points of the body, in reference positions.
     pub lattice: Lattice,
     /// Elastic moduli of its material, Pa.
     pub moduli: ElasticModuli,
@@ -109,7 +109,7 @@ impl TotalFrame {
         self.accelerate(AT_WHOLE_STEP);
     }
 
-    /// Forces at t = 0.
+    /// Finds the forces at t = 0; no work is booked for them.
     fn begin_forces(&mut self) {
         self.follow_with_loads();
         self.internal_forces();
@@ -181,7 +181,7 @@ impl TotalFrame {
         self.time += dt;
     }
 
-    /// `v ← v + dt/2 a`.
+    /// Second half of the change of velocity in a step of velocity Verlet: `v ← v + dt/2 a`.
     fn correct(&mut self, dt: f64) {
         let part = fault!("whole-kick", 0.5 * dt => dt);
         for (v, a) in self.velocity.iter_mut().zip(&self.acceleration) {

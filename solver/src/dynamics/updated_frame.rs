@@ -59,7 +59,7 @@ use field::DiscreteField;
 /// The bodies of a scene in the updated frame.
 #[derive(Debug, Clone)]
 pub struct UpdatedFrame {
-    /// Background patch.
+    /// Background patch of the whole mesh; the nodal fields of a body cover a part of it.
     pub patch: Arc<Patch>,
     /// The fields of the bodies that deform: of those that are whole, or of fragments.
     pub fields: Vec<DiscreteField>,

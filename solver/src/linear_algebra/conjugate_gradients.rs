@@ -56,7 +56,7 @@ pub enum SolveFailure {
     /// Iterations ended short of the tolerance.
     #[error("stopped after {iterations} iterations at an error of {error:.3e}")]
     NotConverged {
-        /// Iterations spent.
+        /// Number of iterations after which the solve was given up.
         iterations: usize,
         /// Estimate of the error reached, in the energy norm.
         error: f64,
@@ -75,7 +75,7 @@ pub struct ConjugateGradients {
     single: Workspace<f32>,
     /// Only where single precision has failed.
     double: Option<Box<Workspace<f64>>>,
-    /// `A x`.
+    /// Room for the product `A x` when a residual is taken.
     product: Vec<f64>,
 }
 
@@ -206,7 +206,7 @@ impl<T: Scalar> Workspace<T> {
         self.matrix.active().any_in(first..(first + CHUNK_ROWS).min(self.matrix.grid.rows))
     }
 
-    /// `d ← z + beta d`.
+    /// Finds the next search direction, `d ← z + beta d`, from the preconditioned residual z.
     fn turn(&mut self, beta: T) {
         let chunk = CHUNK_ROWS * self.matrix.grid.stride;
         let mut direction = std::mem::take(&mut self.direction);
@@ -229,7 +229,7 @@ impl<T: Scalar> Workspace<T> {
         (self.correction, self.residual) = (correction, residual);
     }
 
-    /// `x += e`.
+    /// Adds the correction e to the solution: `x ← x + e`.
     fn add_to(&self, x: &mut [f64]) {
         let chunk = CHUNK_ROWS * self.matrix.grid.stride;
         let chunks = x.par_chunks_mut(chunk).zip(self.correction.par_chunks(chunk)).enumerate();
@@ -333,7 +333,7 @@ impl Solving<'_, '_> {
     }
 }
 
-/// `d ← z + beta d`.
+/// The next search direction, `d ← z + beta d`, on a chunk of rows.
 struct Turn<'a, T> {
     direction: &'a mut [T],
     preconditioned: &'a [T],
@@ -377,7 +377,7 @@ impl<T: Scalar> Vectorised for Advance<'_, T> {
 /// Square of the energy norm of the error that is left, from the decreases so far.
 #[derive(Debug, Clone, Copy)]
 pub struct Remaining {
-    /// The estimate.
+    /// Present estimate of that square.
     pub estimate: f64,
     last: Option<f64>,
 }

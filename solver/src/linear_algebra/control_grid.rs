@@ -4,14 +4,15 @@
 //! stays zero.
 
 use super::lane::LANES;
+use crate::splines::spline::MAX_DEGREE;
 
 /// Rows of control points whose partial sums are formed together.
 pub(crate) const CHUNK_ROWS: usize = 8;
 /// Room before the first control point of a row.
 const LEAD: usize = LANES;
-/// Least room behind the last one: the neighbours that functions of the highest degree and their penalty
-/// reach, and those read with them.
-const MARGIN: usize = 5 + LANES;
+/// Least room behind the last one: the neighbours that functions of the highest degree reach, and those read
+/// with them.
+const MARGIN: usize = MAX_DEGREE + LANES;
 
 /// A field of vectors on the control points, by component.
 pub type VectorField = [Vec<f64>; 2];
@@ -33,7 +34,7 @@ impl ControlGrid {
         Self { columns, rows, stride: (LEAD + columns + MARGIN).next_multiple_of(LANES) }
     }
 
-    /// Length of a field.
+    /// Number of values in a field, with the room at both ends of each row.
     pub fn len(&self) -> usize {
         self.rows * self.stride
     }
@@ -43,7 +44,7 @@ impl ControlGrid {
         self.rows == 0 || self.columns == 0
     }
 
-    /// A field of zeros.
+    /// A field of zeros, with the room at both ends of each row.
     pub fn zeros(&self) -> Vec<f64> {
         vec![0.0; self.len()]
     }
@@ -59,7 +60,7 @@ impl ControlGrid {
         (0..grid.rows).flat_map(move |row| (0..grid.columns).map(move |column| grid.index(column, row)))
     }
 
-    /// Row of an index.
+    /// Row of the control point that has this index in a field.
     pub fn row_of(&self, index: usize) -> usize {
         index / self.stride
     }

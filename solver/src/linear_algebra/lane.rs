@@ -26,7 +26,7 @@ pub trait Scalar:
     + Mul<Output = Self>
     + Neg<Output = Self>
 {
-    /// The number zero.
+    /// The number zero in this precision.
     const ZERO: Self;
     /// The nearest number of this precision.
     fn of(value: f64) -> Self;
@@ -57,7 +57,7 @@ scalar!(f32, f64);
 pub struct Lane<T = f64>(pub [T; LANES]);
 
 impl<T: Scalar> Lane<T> {
-    /// All zero.
+    /// The number zero in every lane.
     pub const ZERO: Self = Self([T::ZERO; LANES]);
 
     /// The same number in every lane.
@@ -95,7 +95,7 @@ impl<T: Scalar> Lane<T> {
         }
     }
 
-    /// `f` of each lane.
+    /// Applies `f` to the number in each lane.
     #[inline(always)]
     pub fn map(self, f: impl Fn(T) -> T) -> Self {
         let mut out = Self::ZERO;

@@ -155,7 +155,7 @@ impl<T: Scalar> Stencil<T> {
         &self.offsets
     }
 
-    /// Degree in x and y.
+    /// Degree of the splines in x and y: couplings reach as many columns and rows.
     pub fn degree(&self) -> [usize; 2] {
         self.degree
     }

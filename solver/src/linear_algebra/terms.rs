@@ -4,9 +4,10 @@
 //! take turns, and the sums stay in the nearest cache.
 
 use super::lane::{LANES, Lane, Scalar, each};
+use crate::splines::spline::MAX_DEGREE;
 
-/// Most couplings of a control point: those of quartic splines and their penalty.
-const MOST: usize = 121;
+/// Most couplings of a control point: those of two splines of the highest degree.
+const MOST: usize = (2 * MAX_DEGREE + 1) * (2 * MAX_DEGREE + 1);
 /// Couplings that go along a row together.
 const TOGETHER: usize = 5;
 
@@ -36,7 +37,7 @@ impl Terms {
         other
     }
 
-    /// Adds a coupling.
+    /// Adds a coupling, given by where its coefficients and its values begin, relative to the row.
     #[inline(always)]
     pub(super) fn push(&mut self, coefficients: isize, values: isize) {
         self.starts[self.count] = (coefficients, values);

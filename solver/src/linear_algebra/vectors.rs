@@ -6,7 +6,7 @@ pub(crate) fn unit(vector: [f64; 2], lengths: f64) -> Option<[f64; 2]> {
     (length > 1e-6 * lengths).then(|| vector.map(|x| x / length))
 }
 
-/// Scalar product.
+/// Scalar product of two vectors.
 pub(crate) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }

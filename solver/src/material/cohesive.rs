@@ -13,7 +13,7 @@ use crate::scene::Softening;
 /// Constants of the degradation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cohesive {
-    /// p: 2 or 5/2.
+    /// Exponent p of `c^p`: 5/2 for exponential softening, else 2.
     power: f64,
     /// a1, a1 a2 and a1 a2 a3.
     series: [f64; 3],

@@ -12,14 +12,14 @@ use crate::scene::{Material, Plane};
 pub struct ElasticModuli {
     /// First Lamé constant; in plane stress that of the reduced law, lam*.
     pub lambda: f64,
-    /// Shear modulus.
+    /// Shear modulus mu, the second Lamé constant, Pa.
     pub mu: f64,
     /// Stress out of the plane over the trace of the strain in it.
     pub out_of_plane: f64,
     /// Twice the energy of the change of volume over the square of that trace: the bulk modulus in plane
     /// strain; in plane stress times `((1 − 2 nu)/(1 − nu))²`, since the body becomes thinner as it is drawn.
     pub volumetric: f64,
-    /// Young's modulus.
+    /// Young's modulus E of the intact material, Pa.
     pub young: f64,
 }
 

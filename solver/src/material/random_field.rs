@@ -18,11 +18,11 @@ const PER_LENGTH: f64 = 2.0;
 /// Corners on either side whose weight counts: exp(−12.5) is left out.
 const REACH: i64 = 5;
 
-/// The field.
+/// A random field of the critical energy release rate over its mean.
 #[derive(Debug, Clone, Copy)]
 pub struct RandomField {
     random: RandomToughness,
-    /// Of the mean.
+    /// Scale `1/Γ(1 + 1/m)` of the Weibull distribution, with which the mean is 1.
     scale: f64,
 }
 

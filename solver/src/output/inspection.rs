@@ -17,11 +17,11 @@ pub struct PointState {
     /// Number of the point in its body; in the updated frame points are numbered anew whenever one changes
     /// spans.
     pub point: usize,
-    /// Area at t = 0, m².
+    /// Area that the point stands for at t = 0, m².
     pub area: f64,
     /// Position, m; that at t = 0 in the total frame.
     pub position: [f64; 2],
-    /// Position now, m.
+    /// Present position in either frame, m.
     pub present: [f64; 2],
     /// Displacement since t = 0, m.
     pub displacement: [f64; 2],
@@ -111,7 +111,7 @@ impl PointState {
         (0.5 * (square(xx, yy) + square(yy, zz) + square(zz, xx)) + 3.0 * xy * xy).sqrt()
     }
 
-    /// Larger for worse.
+    /// Largest magnitude of a strain component; infinite if a number of the point is not finite.
     fn severity(&self) -> f64 {
         if self.is_finite() { largest(&self.strain) } else { f64::INFINITY }
     }

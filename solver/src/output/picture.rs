@@ -9,9 +9,9 @@ use crate::splines::patch::Patch;
 /// Phase field and stress on a raster over the patch, x fastest; NaN outside the body.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Picture {
-    /// Time, s.
+    /// Time since the start of the run, s.
     pub time: f64,
-    /// Pixels in x and y.
+    /// Number of pixels in x and in y.
     pub pixels: [usize; 2],
     /// Lower left corner of the first pixel, m.
     pub origin: [f64; 2],
@@ -40,7 +40,7 @@ impl Picture {
 /// Pixels over a patch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Raster {
-    /// Pixels in x and y.
+    /// Number of pixels in x and in y.
     pub pixels: [usize; 2],
     /// Lower left corner of the first pixel, m.
     pub origin: [f64; 2],

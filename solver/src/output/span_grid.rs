@@ -13,7 +13,7 @@ pub struct SpanGrid {
     pub spans: Vec<[usize; 4]>,
 }
 
-/// A corner of spans.
+/// A corner of one or more spans, with the fields of one body there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Corner {
     /// Number of the body among those that deform, in the order of the scene.

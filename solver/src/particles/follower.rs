@@ -22,7 +22,7 @@ const SHARE: f64 = 0.05;
 /// A position that moves with a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Follower {
-    /// Position, m.
+    /// Present position, m.
     pub position: [f64; 2],
     /// Span whose polynomials are used.
     span: [usize; 2],

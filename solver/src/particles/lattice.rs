@@ -46,13 +46,13 @@ pub struct Lattice {
     pub grid: ControlGrid,
     /// Layout of the control points of the patch: those of the phase field.
     pub patch_grid: ControlGrid,
-    /// Degree in x and y.
+    /// Polynomial degree of the splines in x and y.
     pub degree: [usize; 2],
     /// Points per span in x and y.
     pub points: [usize; 2],
-    /// Their layout.
+    /// Arrangement of the points in a span.
     pub layout: Layout,
-    /// Tiles of columns.
+    /// Columns of spans from the left, in tiles of up to eight.
     pub tiles: Vec<Tile>,
     /// Rows of spans, those of sheets last.
     pub rows: Vec<Row>,
@@ -83,7 +83,7 @@ pub struct BatchFunctions {
 /// A coordinate of material points along one direction, m or unit of the knots.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct AxisPoint {
-    /// The coordinate.
+    /// Coordinate x or y, m; a parameter in the unit of the knots on a patch with a geometry.
     pub position: f64,
     /// The length it stands for.
     pub weight: f64,
@@ -236,7 +236,7 @@ impl Lattice {
         sheets.lift(self.cell(first), position) * self.grid.stride
     }
 
-    /// Points in a span.
+    /// Number of points in a whole span: points in x times points in y.
     pub fn points_per_span(&self) -> usize {
         self.points[0] * self.points[1]
     }

@@ -19,7 +19,7 @@ const STRIP_ROWS: usize = MAX_DEGREE + 2;
 /// What every material point carries.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Point {
-    /// Position, m.
+    /// Present position, m.
     pub position: [f64; 2],
     /// Velocity half a step before the present time, m/s; at t = 0 the initial one.
     pub velocity: [f64; 2],
@@ -44,7 +44,7 @@ pub struct Point {
 pub struct FracturePoint {
     /// History energy H, J/m³.
     pub history: f64,
-    /// Phase field.
+    /// Phase field c at the point, 1 where intact and 0 where broken.
     pub phase: f64,
     /// `c (H − psi+)`, J/m³.
     pub excess: f64,
@@ -59,11 +59,11 @@ pub struct FracturePoint {
 /// The points of one span.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cell {
-    /// Span in x and y.
+    /// Index of the span in x and y, from the lower left corner of the patch.
     pub span: [usize; 2],
     /// First control column and row of its shape functions.
     pub first: [usize; 2],
-    /// Its points.
+    /// Indices of the points in the span, in the order sorted by span.
     pub points: Range<usize>,
 }
 
@@ -72,9 +72,9 @@ pub struct Cell {
 pub struct Strip {
     /// Number of the strip, counted from the bottom of the patch.
     pub index: usize,
-    /// Its cells.
+    /// Indices of the cells of the strip in [`Cells::cells`].
     pub cells: Range<usize>,
-    /// Its points.
+    /// Indices of the points in the strip, in the order sorted by span.
     pub points: Range<usize>,
     /// Control rows that the domains of its points reach.
     pub control_rows: Range<usize>,

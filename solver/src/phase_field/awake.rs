@@ -26,7 +26,7 @@ pub(super) struct Bounds {
     pub(super) work: f64,
     /// Control points where the residual is not zero.
     pub(super) held: Vec<usize>,
-    /// Room for `K c`.
+    /// Room for the product `K c` during a solve.
     pub(super) image: Vec<f64>,
     /// If the equation is not linear.
     pub(super) linearised: Option<Box<Linearised>>,

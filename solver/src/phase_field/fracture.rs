@@ -63,7 +63,7 @@ pub struct LatticeFracture {
 /// Sums over the points, J per metre of thickness.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StressSums {
-    /// Elastic energy.
+    /// Elastic energy of the material, degraded where it is cracked, J/m.
     pub elastic_energy: f64,
     /// Work of the history field since the last sweep.
     pub history_work: f64,
@@ -253,7 +253,7 @@ impl LatticeFracture {
         (energy, least)
     }
 
-    /// The broken points.
+    /// Material points with c below [`BROKEN`].
     pub(crate) fn broken_points(&self, lattice: &Lattice) -> Vec<BrokenPoint> {
         let mut broken = Vec::new();
         for (batch, phases) in self.phase.iter().enumerate().filter(|(_, c)| c.0.iter().any(|c| *c < BROKEN)) {
@@ -287,9 +287,9 @@ pub fn half_width(crack: &Crack, length_scale: f64) -> Option<f64> {
 /// A material point with c below [`BROKEN`].
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BrokenPoint {
-    /// Position, m.
+    /// Position, m; that at t = 0 in the total frame.
     pub position: [f64; 2],
-    /// Its c.
+    /// Phase field c at the point.
     pub phase: f64,
     /// Distance to its neighbours, m.
     pub spacing: f64,
@@ -310,7 +310,7 @@ pub(crate) fn most_broken(broken: &[BrokenPoint]) -> Option<[f64; 2]> {
 /// The tip of a crack.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CrackTip {
-    /// Where it is, m.
+    /// Position of the tip, m; in the total frame that of its material at t = 0.
     pub place: [f64; 2],
     /// Its distance from the start of the crack, m.
     pub distance: f64,

@@ -45,7 +45,7 @@ struct Equation<'a> {
 }
 
 impl Equation<'_> {
-    /// Assembles K and b.
+    /// Assembles the matrix K and the right-hand side b in the cells that are awake.
     fn assemble(&mut self, field: &mut PhaseField) {
         if self.linearised.is_none() {
             let negligible = field.negligible();

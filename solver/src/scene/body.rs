@@ -13,9 +13,9 @@ use crate::linear_algebra::extremes::smaller;
 pub struct Material {
     /// Young's modulus, Pa.
     pub young_modulus: f64,
-    /// Poisson's ratio.
+    /// Poisson's ratio ν, without a unit.
     pub poisson_ratio: f64,
-    /// Density, kg/m³.
+    /// Density of the undeformed material, kg/m³.
     pub density: f64,
     /// Brittle fracture, if modelled.
     pub fracture: Option<Fracture>,
@@ -32,7 +32,7 @@ pub enum Split {
     StarConvex(f64),
     /// Driven by the largest principal stress; all of the energy is degraded (Wu 2017).
     Rankine,
-    /// All of it.
+    /// No split: all of the elastic energy drives the phase field, and all of it is degraded.
     None,
 }
 
@@ -69,7 +69,7 @@ pub enum CrackModel {
     PfCzm {
         /// Tensile strength, Pa.
         tensile_strength: f64,
-        /// What follows it.
+        /// How the stress falls with the opening once it has reached the tensile strength.
         softening: Softening,
     },
 }
@@ -93,7 +93,7 @@ impl CrackModel {
 /// Phase field in Borden's convention.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fracture {
-    /// Surface energy.
+    /// Surface energy of a crack, and how a crack degrades the material.
     pub model: CrackModel,
     /// Critical energy release rate Gc, J/m².
     pub critical_energy_release_rate: f64,
@@ -164,12 +164,12 @@ pub enum CrackKind {
     Driven(f64),
 }
 
-/// Initial crack.
+/// A crack that is there from t = 0, or that is driven along a line from then on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Crack {
     /// Corners of a polyline, m: at least the two ends.
     pub points: Vec<[f64; 2]>,
-    /// What it is.
+    /// How the crack is modelled: as broken material, as a slit, or as a seed that grows.
     pub kind: CrackKind,
 }
 
@@ -234,7 +234,7 @@ pub struct Body {
     pub name: String,
     /// Name of its material.
     pub material: String,
-    /// Region it fills.
+    /// Region that the body fills at t = 0.
     pub shape: Shape,
     /// Material points per span and direction.
     pub particles_per_cell: [usize; 2],
@@ -254,12 +254,12 @@ pub struct Body {
     pub tractions: Vec<Traction>,
     /// Conditions on its edges.
     pub conditions: Vec<EdgeCondition>,
-    /// Initial cracks.
+    /// Cracks that are there from t = 0, or that are driven along lines from then on.
     pub cracks: Vec<Crack>,
 }
 
 impl Body {
-    /// Its slits.
+    /// Cracks of the body that are slits: discontinuities of the displacement.
     pub(crate) fn slits(&self) -> impl Iterator<Item = &Crack> {
         self.cracks.iter().filter(|crack| crack.is_slit())
     }

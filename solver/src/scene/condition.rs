@@ -6,13 +6,13 @@ use super::time::{Formula, TimeFactor};
 /// its second.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Side {
-    /// Smallest x.
+    /// Side of smallest x, or of the smallest first parameter of a patch.
     Left,
-    /// Largest x.
+    /// Side of largest x, or of the largest first parameter of a patch.
     Right,
-    /// Smallest y.
+    /// Side of smallest y, or of the smallest second parameter of a patch.
     Bottom,
-    /// Largest y.
+    /// Side of largest y, or of the largest second parameter of a patch.
     Top,
 }
 
@@ -42,9 +42,9 @@ pub enum Edge {
     Segment([[f64; 2]; 2]),
     /// An arc of a circle.
     Arc {
-        /// Centre, m.
+        /// Centre of the circle, m.
         center: [f64; 2],
-        /// Radius, m.
+        /// Radius of the circle, m.
         radius: f64,
         /// Angles between which it lies, anticlockwise from the first, rad.
         angles: [f64; 2],
@@ -106,9 +106,9 @@ impl Traction {
 /// What a condition prescribes, at its full value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Motion {
-    /// Velocity, m/s.
+    /// Velocity in x and y at a time factor of 1, m/s.
     Velocity([f64; 2]),
-    /// Displacement, m.
+    /// Displacement in x and y at a time factor of 1, m.
     Displacement([f64; 2]),
 }
 
@@ -177,13 +177,13 @@ impl Prescribed {
 pub struct Boundary {
     /// Name of its columns of reaction and work; without one it has none.
     pub name: Option<String>,
-    /// Side of the mesh.
+    /// Side of the mesh on which the condition acts.
     pub side: Side,
     /// Ends of the part along the side (m, smaller first); absent: the whole side.
     pub part: Option<[f64; 2]>,
     /// Which components are prescribed.
     pub fix: [bool; 2],
-    /// What they do.
+    /// Motion of the prescribed components, and its factor over time.
     pub prescribed: Prescribed,
 }
 
@@ -217,7 +217,7 @@ pub struct EdgeCondition {
     pub edge: Edge,
     /// Which components are prescribed.
     pub hold: Hold,
-    /// What they do.
+    /// Motion of the prescribed components, and its factor over time.
     pub prescribed: Prescribed,
 }
 

@@ -15,9 +15,9 @@ pub(crate) enum BoundaryEdge {
     Line(Segment),
     /// Circle, counterclockwise if `sign` is 1, else clockwise.
     Circle {
-        /// Centre, m.
+        /// Centre of the circle, m.
         center: [f64; 2],
-        /// Radius, m.
+        /// Radius of the circle, m.
         radius: f64,
         /// Sense in which it is run through, 1 or −1.
         sign: f64,
@@ -25,9 +25,8 @@ pub(crate) enum BoundaryEdge {
 }
 
 impl Shape {
-    /// Its edges: those of a union or difference are all of its shapes', also where they bound
-    /// nothing. The patch,
-    /// which the shape does not know, has none.
+    /// Its edges: those of a union or difference are all of its shapes', also where they bound nothing. The
+    /// patch, which the shape does not know, has none.
     pub(crate) fn edges(&self) -> Vec<BoundaryEdge> {
         let circle =
             |center: &[f64; 2], radius: &f64, sign| BoundaryEdge::Circle { center: *center, radius: *radius, sign };
@@ -81,7 +80,7 @@ impl BoundaryEdge {
         }
     }
 
-    /// Its length, m.
+    /// Length of the whole edge, m: of a circle the circumference.
     pub(crate) fn length(&self) -> f64 {
         match self {
             Self::Line([a, b]) => (b[0] - a[0]).hypot(b[1] - a[1]),

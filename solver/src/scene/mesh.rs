@@ -26,7 +26,7 @@ pub struct Mesh {
 /// Geometry of a general patch, row by row, first direction fastest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Geometry {
-    /// Control points, m.
+    /// Positions x and y of the control points, m.
     pub control_points: Vec<[f64; 2]>,
     /// Weights, all positive.
     pub weights: Vec<f64>,

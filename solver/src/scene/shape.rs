@@ -8,7 +8,7 @@ use crate::linear_algebra::extremes::{around, larger, smaller};
 pub enum Shape {
     /// Axis-aligned rectangle.
     Rectangle {
-        /// Lower left corner.
+        /// Lower left corner, m: the smallest x and y.
         min: [f64; 2],
         /// Upper right corner.
         max: [f64; 2],
@@ -24,14 +24,14 @@ pub enum Shape {
     Annulus {
         /// Centre of both circles, m.
         center: [f64; 2],
-        /// Inner radius.
+        /// Radius of the inner circle, m.
         inner_radius: f64,
-        /// Outer radius.
+        /// Radius of the outer circle, m.
         outer_radius: f64,
     },
-    /// Simple polygon.
+    /// Simple polygon: its edges do not cross each other.
     Polygon {
-        /// Corners in order.
+        /// Corners in their order along the boundary, m; an edge joins the last one to the first.
         points: Vec<[f64; 2]>,
     },
     /// All of the background patch.
@@ -136,7 +136,7 @@ pub(crate) fn polygon_edges(points: &[[f64; 2]]) -> impl Iterator<Item = [[f64; 
     (0..points.len()).map(|i| [points[(i + points.len() - 1) % points.len()], points[i]])
 }
 
-/// Even–odd rule.
+/// Whether a position lies in a polygon, by the even–odd rule.
 fn polygon_contains(points: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
     let crosses =
         |[[x0, y0], [x1, y1]]: &[[f64; 2]; 2]| (y0 > &y) != (y1 > &y) && x < x0 + (y - y0) / (y1 - y0) * (x1 - x0);

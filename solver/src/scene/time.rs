@@ -11,7 +11,7 @@ const PANELS: usize = 256;
 /// A factor over time (s).
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TimeFactor {
-    /// Its course.
+    /// Value of the factor as a function of the time, until it ends.
     pub course: Course,
     /// From this time on (s) the factor is zero: a load is gone, and a velocity is zero. Validation refuses
     /// it for displacements.
@@ -21,7 +21,7 @@ pub struct TimeFactor {
 /// Course of a factor.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Course {
-    /// 1 from t = 0.
+    /// The factor is 1 from t = 0 on.
     #[default]
     Constant,
     /// Rises linearly from 0 to 1 over this time, s.

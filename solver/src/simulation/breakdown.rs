@@ -21,13 +21,13 @@ const NEAR_TOLERANCE: f64 = 1e3;
 pub struct Breakdown {
     /// Step at which it was found.
     pub step: usize,
-    /// Time, s.
+    /// Time at the end of that step, s.
     pub time: f64,
-    /// Place, m.
+    /// Position at which or near which it was found, m.
     pub place: [f64; 2],
     /// Number of the point there, in its body, where a point stands for the place.
     pub point: Option<usize>,
-    /// What happened.
+    /// Description of what happened, for people.
     pub what: String,
     /// Likely cause and remedy.
     pub cause: String,

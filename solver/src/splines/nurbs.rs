@@ -51,7 +51,7 @@ use crate::splines::spline::SplineSpace;
 pub enum Form {
     /// Equal weights and `x_d = origin_d + slope_d ξ_d`: no division, no inverse map, constant Jacobian.
     Affine {
-        /// Image of ξ = 0, m.
+        /// Position x that the map gives to the parameters ξ = 0, m.
         origin: [f64; 2],
         /// Derivative of x_d with respect to ξ_d, positive.
         slope: [f64; 2],

@@ -234,7 +234,7 @@ impl Patch {
 /// Shape functions at a position.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PointFunctions {
-    /// The position, m.
+    /// Position where the functions are evaluated, m.
     pub position: [f64; 2],
     /// Index in a field and value of those that do not vanish.
     pub values: Vec<(usize, f64)>,

@@ -166,7 +166,7 @@ pub(crate) struct ScreenedStress<'a> {
     pub moduli: ElasticModuli,
     /// Energy density from which on a cell is noted, J/m³.
     pub level: f64,
-    /// Batches in a cell.
+    /// Number of batches in a cell: as many as a span has points.
     pub span: usize,
     /// Whether a cell of the strip reaches it.
     pub reached: &'a mut [bool],
@@ -302,5 +302,36 @@ impl PointKernel for SurfaceEnergy<'_> {
         let exists = values.phase.zip(weight, |c, w| if w > 0.0 { c } else { f64::INFINITY });
         self.least = self.least.zip(exists, smaller);
         Stress::ZERO
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::hencky::Distortion;
+
+    /// The bound is the size that is told; lanes that fill up a batch (weight 0) and broken points are no
+    /// material.
+    #[test]
+    fn only_material_is_distorted() {
+        let gradients = [[[0.1, -0.3], [0.2, -0.1]], [[0.3, 0.02], [0.0, 0.1]], [[0.0, -2.0], [3.0, 0.0]]];
+        let lanes = |row: usize, column: usize| Lane(std::array::from_fn(|l| gradients[l.min(2)][row][column]));
+        let gradient = [lanes(0, 0), lanes(0, 1), lanes(1, 0), lanes(1, 1)];
+        let values = PointValues { gradient, phase: Lane::ZERO, phase_gradient: [Lane::ZERO; 2] };
+        let with_two = Lane(std::array::from_fn(|l| if l < 2 { 1.0 } else { 0.0 }));
+        let sizes = |phase: &[Lane]| {
+            let mut kernel = LargestDistortion { phase, size: Lane::ZERO };
+            kernel.points::<false>(0, with_two, &values);
+            kernel.size.0
+        };
+        let told = |lane: usize, strains: bool| Distortion::of(&gradients[lane], strains).size();
+        let elastic = sizes(&[]);
+        for (lane, expected) in [(0, told(0, false).tan()), (1, told(1, true)), (2, 0.0), (7, 0.0)] {
+            approx::assert_relative_eq!(elastic[lane], expected, epsilon = 1e-14);
+        }
+        let first_is_broken = Lane(std::array::from_fn(|l| if l == 0 { 0.01 } else { 1.0 }));
+        let cracking = sizes(&[first_is_broken]);
+        assert_eq!(cracking[0], 0.0);
+        approx::assert_relative_eq!(cracking[1], told(1, false).tan(), epsilon = 1e-14);
     }
 }

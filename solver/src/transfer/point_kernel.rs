@@ -7,9 +7,9 @@ use crate::linear_algebra::lane::Lane;
 pub struct PointValues {
     /// Displacement gradient: `[du_x/dx, du_x/dy, du_y/dx, du_y/dy]`.
     pub gradient: [Lane; 4],
-    /// Phase field.
+    /// Phase field c, 1 where intact and 0 where broken.
     pub phase: Lane,
-    /// Its gradient, 1/m.
+    /// Gradient of the phase field in x and y, 1/m.
     pub phase_gradient: [Lane; 2],
 }
 
@@ -28,7 +28,7 @@ pub struct Stress {
 }
 
 impl Stress {
-    /// No stress.
+    /// A stress whose components are all zero.
     pub const ZERO: Self = Self::symmetric([Lane::ZERO; 3]);
 
     /// A symmetric stress `[xx, yy, xy]`.
@@ -76,6 +76,6 @@ pub trait PointKernel: Send {
 pub struct Fields<'a> {
     /// Displacement components, m.
     pub displacement: [&'a [f64]; 2],
-    /// Phase field.
+    /// Control values of the phase field c.
     pub phase: &'a [f64],
 }

@@ -48,7 +48,7 @@ const ENERGIES: [&str; 3] = ["kinetic_j", "elastic_j", "fracture_j"];
 /// What `--baseline` names.
 #[derive(Debug, Clone)]
 pub struct Baseline {
-    /// This program.
+    /// Path of this program, which runs the same scenes as that of the other checkout.
     pub program: PathBuf,
     /// Folder of the other checkout.
     pub checkout: PathBuf,

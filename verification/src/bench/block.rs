@@ -74,7 +74,7 @@ pub struct Block {
     pub name: String,
     /// The scene that it stands for.
     pub scene: Scene,
-    /// Background patch.
+    /// Spline patch of the background mesh.
     pub patch: Patch,
     /// Its material points.
     pub lattice: Lattice,
@@ -86,7 +86,7 @@ pub struct Block {
     pub displacement: [Vec<f64>; 2],
     /// History energy of the seeded crack, J/m³.
     pub history: Vec<Lane>,
-    /// Number of points.
+    /// Number of material points.
     pub points: usize,
 }
 

@@ -90,7 +90,7 @@ impl<const P: usize> Minimal<P> {
         minimal
     }
 
-    /// Number of points.
+    /// Number of material points.
     pub fn count(&self) -> usize {
         self.particles.len()
     }

@@ -48,7 +48,7 @@ impl MovingBlock {
         })
     }
 
-    /// Number of points.
+    /// Number of material points.
     pub fn count(&self) -> usize {
         self.points.len()
     }

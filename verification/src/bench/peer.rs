@@ -51,7 +51,7 @@ pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
     })
 }
 
-/// Our own steps.
+/// Steps of our updated frame on the block: as many as count for the peer.
 fn ours(block: &PeerBlock) -> Contestant<'_> {
     let steps = block.steps[1] - block.steps[0];
     let label = "fisura, updated frame";

@@ -18,7 +18,7 @@ pub const TIGHT_TOLERANCE: f64 = 2e-8;
 /// What a run is measured by.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quantity {
-    /// In words.
+    /// Name of the quantity in words.
     pub name: &'static str,
     /// Where the comparison begins, s.
     pub from: f64,

@@ -19,7 +19,7 @@ const NOTHING: &str = "nothing was verified";
 pub struct BenchSet {
     /// Name and version of the format, [`SCHEMA`].
     pub schema: String,
-    /// Where and when.
+    /// Commit, compiler and machine, and when the measurement began.
     pub environment: Environment,
     /// Few meshes and repetitions.
     pub quick: bool,
@@ -35,7 +35,7 @@ pub struct BenchSet {
 /// One run of one thing.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
-    /// Wall time, s.
+    /// Wall time of the sample, s.
     pub wall_s: f64,
     /// Processor time of all threads of the process, s; the wall time where the system does not tell.
     pub cpu_s: f64,
@@ -72,7 +72,7 @@ impl Spread {
 /// The error of an answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AnswerError {
-    /// In words.
+    /// Name of the quantity whose error this is, in words.
     pub quantity: String,
     /// Error, relative if it has no unit.
     pub value: f64,
@@ -102,7 +102,7 @@ pub struct Work {
     pub unit: String,
 }
 
-/// Which time counts.
+/// Clock whose time is given per unit of work.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Clock {
@@ -113,7 +113,7 @@ pub enum Clock {
     Wall,
 }
 
-/// One benchmark.
+/// One contestant of a benchmark: its work, the error of its answer, and its times.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct BenchRecord {
     /// Name of the record: `family/…`.
@@ -122,11 +122,11 @@ pub struct BenchRecord {
     pub family: String,
     /// Curve or row it belongs to.
     pub label: String,
-    /// What was run.
+    /// Parameters of what was run, by name, such as `degree` and `steps`.
     pub parameters: BTreeMap<String, Value>,
-    /// Threads it ran on.
+    /// Number of threads that the samples ran on.
     pub threads: usize,
-    /// Which time counts.
+    /// Clock whose time is given in `ns_per_unit`.
     pub clock: Clock,
     /// Error of the answer, where there is a reference for it.
     pub error: Option<AnswerError>,
@@ -143,9 +143,9 @@ pub struct BenchRecord {
     pub answer: String,
     /// Every sample, in the order of the rounds.
     pub samples: Vec<Sample>,
-    /// Wall time, s.
+    /// Wall time of a sample, s: median and extremes.
     pub wall_s: Spread,
-    /// Processor time, s.
+    /// Processor time of a sample, s: median and extremes.
     pub cpu_s: Spread,
     /// Time per unit of work by the clock that counts, ns.
     pub ns_per_unit: Spread,
@@ -175,7 +175,7 @@ impl BenchRecord {
             .with("phase_field_bytes", extent.phase_field_bytes)
     }
 
-    /// With a parameter.
+    /// The same record with one more parameter, or another value of it.
     pub fn with(mut self, name: &str, value: impl Into<Value>) -> Self {
         self.parameters.insert(name.to_string(), value.into());
         self
@@ -204,7 +204,7 @@ impl BenchRecord {
         }
     }
 
-    /// All errors.
+    /// All errors of the answer: that of the record first, then those of further quantities.
     pub fn errors(&self) -> impl Iterator<Item = &AnswerError> {
         self.error.iter().chain(&self.further_errors)
     }
@@ -234,7 +234,7 @@ impl BenchRecord {
 /// A stored ratio to another code.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NamedPeer {
-    /// Code and version.
+    /// Name of the other code, with its version where that is stored.
     pub code: String,
     /// Degree of its splines.
     pub degree: usize,
@@ -244,7 +244,7 @@ pub struct NamedPeer {
     pub value: f64,
     /// What to know before quoting it.
     pub remark: String,
-    /// Date and machine.
+    /// Date, machine and clock of the stored measurement, in words.
     pub conditions: String,
 }
 

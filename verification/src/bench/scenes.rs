@@ -16,7 +16,7 @@ use super::{BenchError, Settings, advance};
 
 /// Degree of the blocks.
 const DEGREE: usize = 2;
-/// Steps of a sample.
+/// Number of time steps in a sample.
 const STEPS: usize = 10;
 /// The ledger of a cracking body closes to this fraction of the largest energy, as the suites ask.
 const CLOSURE: f64 = 1e-3;
@@ -31,7 +31,7 @@ const MODELS: [(&str, CrackModel, Split); 7] = [
     ("fracture, PF-CZM", COHESIVE, Split::Spectral),
     ("fracture, PF-CZM, Rankine", COHESIVE, Split::Rankine),
 ];
-/// a1 = 4.35.
+/// Cohesive crack: in the material of the block `a1 = 2 E Gc/(π l0 ft²)` is 4.35.
 const COHESIVE: CrackModel = CrackModel::PfCzm { tensile_strength: 7.5e6, softening: Softening::Linear };
 
 /// What must have happened in a scene for its time to count.
@@ -45,7 +45,7 @@ enum Happens {
     CrackGrows,
     /// Two bodies, and no force of contact.
     Apart,
-    /// Forces of contact.
+    /// Two bodies meet, and forces of contact act between them.
     Contact,
 }
 

@@ -20,7 +20,7 @@ use crate::extremes::smallest;
 
 /// Error of the phase field in the norm of `solver.phase_field_tolerance`.
 const TOLERANCE: f64 = 2e-6;
-/// Most iterations.
+/// Largest number of iterations of a solve.
 const LIMIT: usize = 5000;
 
 /// Times the solvers.
@@ -49,7 +49,7 @@ fn block(degree: usize, cells: usize, spans: usize) -> Result<Block, BenchError>
     Block::of(scene)
 }
 
-/// A cold crack.
+/// Linear system of the phase field of a block with a seeded crack, and the start of its solution.
 struct System {
     matrix: Stencil,
     load: Vec<f64>,

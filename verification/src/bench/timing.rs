@@ -18,7 +18,7 @@ pub struct Stopwatch {
 }
 
 impl Stopwatch {
-    /// Starts now.
+    /// Starts to measure wall time and processor time.
     pub fn start() -> Self {
         Self { cpu: process_seconds(), wall: Instant::now() }
     }
@@ -44,7 +44,7 @@ fn process_seconds() -> Option<f64> {
     None
 }
 
-/// Time of some work.
+/// Wall time and processor time of some work.
 pub fn time(work: impl FnOnce()) -> Sample {
     timed(work).0
 }
@@ -66,7 +66,7 @@ fn calls_of(once: Sample) -> usize {
 pub struct Contestant<'a> {
     /// Record without samples.
     pub record: BenchRecord,
-    /// Runs it once.
+    /// Runs the contestant once and measures its time.
     pub run: Run<'a>,
 }
 

@@ -119,7 +119,7 @@ fn solution() -> Derived<StandingWave> {
     Derived { motion: StandingWave, plane: Plane::Strain }
 }
 
-/// A body at t = 0.
+/// The body at t = 0 in one of the two frames; in the total one with the points at which its error is taken.
 enum Body {
     Total(Box<TotalFrame>, Box<ErrorPoints>),
     Updated(Box<UpdatedFrame>),

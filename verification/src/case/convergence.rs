@@ -67,7 +67,7 @@ pub enum Loading {
     Weak,
 }
 
-/// What is refined.
+/// What becomes finer from level to level: the mesh or the time step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Refine {
     /// The mesh, with time steps in proportion to a power of the span length; (p + 1)/2 if none is given.
@@ -79,9 +79,9 @@ pub enum Refine {
 /// A convergence study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConvergenceSetup {
-    /// Exact solution.
+    /// Name of the exact solution that is solved for, or `projection`.
     pub problem: String,
-    /// Plane state.
+    /// Plane state, strain or stress.
     pub plane: Plane,
     /// Frame: the updated one has finite kinematics.
     pub frame: Frame,
@@ -99,11 +99,11 @@ pub struct ConvergenceSetup {
     pub layout: Layout,
     /// Points per span and direction, one per degree; p + 1 if absent.
     pub points: Option<Vec<usize>>,
-    /// Mass matrix.
+    /// Kind of mass matrix, lumped or consistent.
     pub mass: Mass,
     /// How the problem is loaded.
     pub loading: Loading,
-    /// Mesh or time step.
+    /// Whether the levels differ in the mesh or in the time step.
     pub refine: Refine,
     /// Time step on the coarsest mesh over its critical one; the fractions tried, where the time step is
     /// refined.

@@ -25,7 +25,7 @@ pub struct CaseScene {
     pub name: String,
     /// Values along the axes.
     pub parameters: Vec<(String, serde_json::Value)>,
-    /// The scene.
+    /// Scene with the values of the axes and the variant, and with its formulas evaluated.
     pub scene: Scene,
     /// Values of the case in this scene.
     pub values: BTreeMap<String, f64>,

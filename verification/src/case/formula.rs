@@ -36,9 +36,9 @@ pub enum Name<'a> {
 /// How a number is found from the values of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reduction {
-    /// The first.
+    /// The value in the first row.
     Initial,
-    /// The last.
+    /// The value in the last row.
     Final,
     /// The largest magnitude.
     Largest,
@@ -78,7 +78,7 @@ impl Formula {
 /// A number of a case file: given, or a formula.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Amount {
-    /// In SI.
+    /// A number that the file gives, in SI units.
     Given(f64),
     /// To be found for every scene.
     Formula(Box<Formula>),

@@ -10,9 +10,9 @@ use fisura::scene::{Mesh, Scene, Shape};
 /// A geometry of the rings and how it is resolved.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Geometry {
-    /// Outer radius, m.
+    /// Outer radius of a ring, m.
     pub outer: f64,
-    /// Inner radius, m.
+    /// Inner radius of a ring, m.
     pub inner: f64,
     /// Length scale l0, m.
     pub length_scale: f64,

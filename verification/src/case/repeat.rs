@@ -11,9 +11,9 @@ use crate::scene::document::{Document, Node, Value};
 use crate::scene::suggest::hint;
 use crate::scene::{Problem, SceneFileError};
 
-/// File of the bases.
+/// Name of the file with the tables that the key `base` names.
 const BASES: &str = "bases.toml";
-/// File of the sets.
+/// Name of the file with the lists of checks that the key `set` names.
 const SETS: &str = "check-sets.toml";
 /// Most sets or bases within each other.
 const DEEPEST: usize = 8;

@@ -109,7 +109,7 @@ fn read_id(item: &Item<'_>) -> Option<String> {
     item.fail(format!("{text:?} is not a valid id"), format!("join lower-case words by dashes: {like:?}"))
 }
 
-/// Words as an id.
+/// Turns words into an id: lower case, letters and digits only, with a dash between words.
 pub(super) fn identifier(words: &str) -> String {
     let mapped: String = words.to_lowercase().chars().map(|c| if c.is_alphanumeric() { c } else { ' ' }).collect();
     mapped.split_whitespace().collect::<Vec<_>>().join("-")

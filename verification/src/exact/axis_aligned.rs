@@ -35,7 +35,7 @@ pub const SOLUTIONS: &[Solution] = &[Solution {
     ..Solution::of("axis-aligned", |plane| Box::new(Derived { motion: AxisAligned, plane }))
 }];
 
-/// See the module.
+/// Displacement of the unit square along the axes, with the Hencky law; see the module for its formulas.
 #[derive(Debug, Clone, Copy)]
 pub struct AxisAligned;
 

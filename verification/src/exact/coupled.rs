@@ -59,7 +59,7 @@ fn fields(plane: Plane, model: CrackModel, split: Split) -> Box<dyn ExactSolutio
     Box::new(Derived { motion: Coupled { fracture }, plane })
 }
 
-/// See the module.
+/// Elastodynamics with a phase field; see the module for its formulas.
 #[derive(Debug, Clone)]
 pub struct Coupled {
     /// Model of the crack.

@@ -27,10 +27,10 @@ const TERMS: usize = 20;
 pub const SOLUTIONS: &[Solution] =
     &[Solution::of("disc-wave", |plane| Box::new(Derived { motion: DiscWave::new(plane), plane }))];
 
-/// See the module.
+/// Free vibration of a disc in its first two radial modes; see the module for its formulas.
 #[derive(Debug, Clone, Copy)]
 pub struct DiscWave {
-    /// Wave numbers, 1/m.
+    /// Wave numbers k1 and k2 of the two modes, 1/m.
     wave_numbers: [f64; 2],
 }
 

@@ -34,7 +34,7 @@ pub trait Scalar:
 {
     /// A number that does not vary.
     fn constant(value: f64) -> Self;
-    /// Sine and cosine.
+    /// Sine and cosine of an angle, rad, in this order.
     fn sin_cos(self) -> (Self, Self);
     /// Sine of an angle, rad.
     fn sin(self) -> Self {
@@ -46,9 +46,9 @@ pub trait Scalar:
     }
     /// Exponential function.
     fn exp(self) -> Self;
-    /// Natural logarithm.
+    /// Natural logarithm of a positive number.
     fn ln(self) -> Self;
-    /// Square root.
+    /// Square root of a positive number.
     fn sqrt(self) -> Self;
 }
 

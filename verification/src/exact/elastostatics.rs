@@ -24,7 +24,7 @@ pub const SOLUTIONS: &[Solution] = &[Solution {
     ..Solution::of("elastostatics", |plane| Box::new(Derived { motion: Elastostatics, plane }))
 }];
 
-/// See the module.
+/// Smooth static displacement of linear elasticity; see the module for its formulas.
 #[derive(Debug, Clone, Copy)]
 pub struct Elastostatics;
 

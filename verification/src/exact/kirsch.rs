@@ -37,7 +37,7 @@ pub const SOLUTIONS: &[Solution] = &[Solution {
     ..Solution::of("kirsch", |plane| Box::new(Derived { motion: Kirsch, plane }))
 }];
 
-/// See the module.
+/// Infinite plate with a circular hole under tension along x; see the module for its formulas.
 #[derive(Debug, Clone, Copy)]
 pub struct Kirsch;
 

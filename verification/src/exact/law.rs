@@ -47,7 +47,7 @@ fn isotropic(moduli: &ElasticModuli, [[xx, xy], [yx, yy]]: Tensor) -> Tensor {
     [[spherical + xx * twice, xy * twice], [yx * twice, spherical + yy * twice]]
 }
 
-/// `½ ln(F Fᵀ)`.
+/// Hencky strain `½ ln(F Fᵀ)` of the deformation gradient F.
 fn hencky_strain(f: Tensor) -> Tensor {
     let product = |i: usize, j: usize| f[i][0] * f[j][0] + f[i][1] * f[j][1];
     let (b_xx, b_xy, b_yy) = (product(0, 0), product(0, 1), product(1, 1));

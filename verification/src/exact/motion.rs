@@ -44,9 +44,9 @@ pub trait Motion: Send + Sync {
 /// The exact solution of a [`Motion`].
 #[derive(Debug, Clone, Copy)]
 pub struct Derived<M> {
-    /// What is chosen.
+    /// Displacement, phase field and material, from which the other fields follow.
     pub motion: M,
-    /// Plane state.
+    /// Plane state, strain or stress, for which the fields hold.
     pub plane: Plane,
 }
 

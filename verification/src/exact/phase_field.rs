@@ -36,7 +36,7 @@ const fn solution(name: &'static str, fields: fn(Plane) -> Box<dyn ExactSolution
     Solution { equation: Equation::PhaseField, end_time: 0.0, ..Solution::of(name, fields) }
 }
 
-/// See the module.
+/// Static phase field under a given history energy, without a displacement; see the module for its formulas.
 #[derive(Debug, Clone, Copy)]
 pub struct PhaseField {
     /// Whether the normal derivative of c vanishes on the boundary.

@@ -32,7 +32,7 @@ pub const SOLUTIONS: &[Solution] = &[Solution {
     ..Solution::of("standing-wave", |plane| Box::new(Derived { motion: StandingWave, plane }))
 }];
 
-/// See the module.
+/// Free vibration of a rectangle on rollers; see the module for its formulas.
 #[derive(Debug, Clone, Copy)]
 pub struct StandingWave;
 

@@ -19,9 +19,9 @@ use super::dual::Scalar;
 use super::law::{self, Law};
 use super::motion::{Derived, Motion};
 
-/// Amplitude A, m.
+/// Amplitude A of the vibration, m.
 const AMPLITUDE: f64 = 0.06;
-/// Velocity V, m/s.
+/// Velocity `[V_x, V_y]` of the flight, m/s.
 const VELOCITY: [f64; 2] = [0.75, 0.4];
 /// Phase of the vibration in y, rad.
 const PHASE: f64 = 2.0;
@@ -34,7 +34,7 @@ pub const SOLUTIONS: &[Solution] = &[Solution {
     ..Solution::of("translating-block", |plane| Box::new(Derived { motion: TranslatingBlock, plane }))
 }];
 
-/// See the module.
+/// A block that flies through the mesh and vibrates, with the Hencky law; see the module for its formulas.
 #[derive(Debug, Clone, Copy)]
 pub struct TranslatingBlock;
 

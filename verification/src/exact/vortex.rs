@@ -43,7 +43,7 @@ pub const SOLUTIONS: &[Solution] = &[Solution {
     ..Solution::of("vortex", |plane| Box::new(Derived { motion: Vortex, plane }))
 }];
 
-/// See the module.
+/// Vortex in a ring, with the Hencky law; see the module for its formulas.
 #[derive(Debug, Clone, Copy)]
 pub struct Vortex;
 

@@ -87,7 +87,7 @@ pub fn prepare(
 #[derive(Debug, Clone)]
 pub struct Numerics<'a> {
     stated: [Option<f64>; 6],
-    /// Spacing over l0.
+    /// Mesh spacing at the crack over l0; absent if the submission does not state a spacing.
     spacing: Option<f64>,
     study: &'a MeshStudy,
 }
@@ -144,7 +144,7 @@ impl<'a> Numerics<'a> {
         self.stated[TIP_X].and_then(of_tip).or(self.spacing)
     }
 
-    /// Of an event, SI.
+    /// Numerical uncertainty of an event, SI, from its `column` of the mesh study; absent if it is not known.
     pub fn of_event(&self, column: &str) -> Option<f64> {
         Some(SAFETY * self.study.at(column, self.spacing()?)?)
     }

@@ -14,7 +14,7 @@ const FOLDER: &str = "plate-family";
 const SAME_LOAD: f64 = 0.02;
 /// l0 of the benchmark, m.
 pub const LENGTH_SCALE: f64 = 0.25e-3;
-/// End of the run, s.
+/// End of the simulated time of the benchmark, s.
 pub const END: f64 = 80e-6;
 /// Start of what is compared, s: before, the front of the waves is as steep as the mesh.
 const START: f64 = 5e-6;
@@ -26,11 +26,11 @@ const FRACTURE_START: f64 = 30e-6;
 pub struct Declared {
     /// Variant in the reference data.
     pub name: &'static str,
-    /// Plane state.
+    /// Plane state, strain or stress.
     pub plane: Plane,
     /// Whether the crack is a slit.
     pub slit: bool,
-    /// Traction, Pa.
+    /// Traction on each loaded edge, Pa.
     pub traction: f64,
 }
 
@@ -46,19 +46,19 @@ pub const FAMILY: [Declared; 5] = [
 /// The reference of a submission.
 #[derive(Debug, Clone)]
 pub struct Variant<'a> {
-    /// Id in the library.
+    /// Id of the reference curves in the library, such as `plate-family/slit`.
     pub id: String,
     /// Its text in legends.
     pub label: String,
     /// Where its uncertainty comes from.
     pub uncertainty: String,
-    /// What it models.
+    /// Model of the reference; that of the first of [`FAMILY`] if the reference is not in the family.
     pub declared: Declared,
     /// Curves by quantity.
     pub curves: [Option<&'a ReferenceCurve>; 6],
-    /// Onset and branching, s.
+    /// Time at which the crack starts, s.
     pub onset: f64,
-    /// Absent where the crack does not branch.
+    /// Time at which the crack branches, s; absent where it does not.
     pub branching: Option<f64>,
     /// What was assumed to find it.
     pub notes: Vec<String>,

@@ -26,7 +26,7 @@ pub struct Mapping {
     pub location: Option<Location>,
     /// File, relative to the folder.
     pub file: String,
-    /// Its column.
+    /// Column of the file, by name or by number.
     pub column: ColumnName,
     /// SI over the unit of the column, with the factor and the thickness.
     pub scale: f64,

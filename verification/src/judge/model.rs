@@ -9,12 +9,12 @@ use crate::scene::units::Dimension;
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Plane {
-    /// Plane strain.
+    /// Plane strain: the strain across the plane is zero.
     #[default]
     Strain,
-    /// Plane stress.
+    /// Plane stress: the stress across the plane is zero.
     Stress,
-    /// Nobody knows.
+    /// The submission says that it is not known.
     Unknown,
 }
 
@@ -22,21 +22,21 @@ pub enum Plane {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Crack {
-    /// A history field.
+    /// Seeded by an initial history field.
     #[default]
     Seeded,
     /// A prescribed phase field.
     PhaseField,
     /// Free faces in the mesh, or a gap between points.
     Slit,
-    /// Nobody knows.
+    /// The submission says that it is not known.
     Unknown,
 }
 
 /// What was modelled, SI units; the default is that of closed forms, which ask for no model.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Model {
-    /// Plane state.
+    /// Plane state that the submission declares.
     pub plane: Plane,
     /// Traction on each loaded edge, Pa; absent where unknown.
     pub traction: Option<f64>,

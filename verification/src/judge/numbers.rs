@@ -42,18 +42,18 @@ static NUMBERS: LazyLock<Numbers> = LazyLock::new(|| {
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Asked {
-    /// Key in `[values]`.
+    /// Key of the number in the table `[values]` of `submission.toml`.
     pub name: String,
-    /// What it is.
+    /// Description of the number in words.
     pub what: String,
-    /// Its unit, of SI.
+    /// Unit of the number, SI; `1` for a plain number.
     pub unit: String,
     /// What it is held against.
     pub basis: Basis,
 }
 
 impl Asked {
-    /// Its dimension.
+    /// Dimension of the unit, as a value in `submission.toml` has to have it.
     pub fn dimension(&self) -> Dimension {
         units::parse(&format!("1 {}", self.unit)).map_or(Dimension::NONE, |one| one.dimension)
     }
@@ -65,7 +65,7 @@ impl Asked {
 pub enum Basis {
     /// The formula of a closed form, and what a sound mesh may be off by, relative.
     ClosedForm(String, f64),
-    /// An upper bound.
+    /// An upper bound, which a positive value has to stay below.
     Below(f64),
     /// A value that decides nothing, and the name of the reason.
     Undecided(f64, String),

@@ -60,13 +60,13 @@ pub struct Submission {
     pub code: Code,
     /// Model that it computed with.
     pub model: Model,
-    /// Method in words.
+    /// Numerical method in words; absent if the submission does not give it.
     pub method: Option<String>,
     /// Spacing at the crack, m.
     pub spacing: Option<f64>,
     /// Further figures of the discretisation, as written.
     pub discretisation: Vec<(String, String)>,
-    /// What the run cost.
+    /// Cost of the run; each part is absent if the submission does not give it.
     pub cost: Cost,
     /// Numerical uncertainty that the submission states, by quantity: relative, of the tip in m.
     pub stated: [Option<f64>; 6],

@@ -39,7 +39,7 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// The word.
+    /// Name of the outcome, such as `pass`.
     pub fn word(self) -> &'static str {
         match self {
             Self::Diagnostic => "diagnostic",
@@ -183,7 +183,7 @@ impl Verdict {
         }
     }
 
-    /// Every comparison.
+    /// Every comparison: those of the quantities, then those of the events.
     pub fn comparisons(&self) -> impl Iterator<Item = &Comparison> {
         self.quantities.iter().flat_map(|q| &q.comparisons).chain(&self.events)
     }

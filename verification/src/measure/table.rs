@@ -8,14 +8,14 @@ use crate::reference::Library;
 pub(super) struct Question<'a> {
     pub check: &'a Check,
     pub run: &'a Run<'a>,
-    /// All variants.
+    /// Runs of all scenes of the case.
     pub runs: &'a [Run<'a>],
     pub library: &'a Library,
 }
 
 type Answer = Result<Measured, String>;
 
-/// A measure.
+/// A measure: how a check gets its number from a run.
 pub struct Measure {
     /// Name in case files.
     pub name: &'static str,
@@ -43,7 +43,7 @@ pub enum LooksAt {
 
 const WINDOW: &[&str] = &["from", "to"];
 
-/// All of them.
+/// All measures that a check can name.
 pub static MEASURES: [Measure; 31] = [
     on_curve("relative-rms", |q| series::against_curve("relative-rms", q.check, q.run, q.library)),
     on_curve("rms-difference", |q| series::against_curve("rms-difference", q.check, q.run, q.library)),

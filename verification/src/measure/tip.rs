@@ -43,9 +43,9 @@ pub(super) fn passes(check: &Check, run: &Run) -> Result<Option<f64>, String> {
 
 /// Where and when the crack branched.
 pub(super) struct Branching {
-    /// Time, s.
+    /// Time of the first sample at which the tip is off the axis, s.
     pub(super) time: f64,
-    /// Place, m.
+    /// Coordinate x of the tip at that time, m.
     pub(super) x: f64,
 }
 

@@ -11,7 +11,7 @@ use super::manifest::MANIFEST;
 pub struct OutputError {
     /// What is wrong, with the path.
     pub message: String,
-    /// What would help.
+    /// What the user can do about it, in words.
     pub remedy: String,
 }
 

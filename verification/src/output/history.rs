@@ -21,7 +21,7 @@ pub struct Table {
 #[derive(Debug, Error)]
 #[error("{path}: {message}")]
 pub struct TableError {
-    /// The file at fault.
+    /// Path of the file, or the name that stands for it.
     pub path: String,
     /// What is wrong, with the line where there is one.
     pub message: String,
@@ -48,7 +48,7 @@ impl Table {
         }
     }
 
-    /// Number of rows.
+    /// Number of rows; 0 if there are no columns.
     pub fn rows(&self) -> usize {
         self.columns.first().map_or(0, Vec::len)
     }

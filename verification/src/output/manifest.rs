@@ -18,7 +18,7 @@ use super::error::OutputError;
 use super::lock::LOCK;
 use super::temporary;
 
-/// Name of the list.
+/// Name of the file that lists what was written into a folder.
 pub const MANIFEST: &str = "fisura.sha256";
 
 /// Begins the first line, which ends with the command that the folder belongs to.

@@ -67,7 +67,7 @@ pub struct Limit {
 /// What bounds say about a reference.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Standing {
-    /// There are none.
+    /// The record has no bounds.
     Absent,
     /// A value within them agrees with the reference, or there is no reference value.
     Decide,

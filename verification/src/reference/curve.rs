@@ -15,7 +15,7 @@ pub struct ReferenceCurve {
     pub label: String,
     /// Citation of its source.
     pub citation: String,
-    /// Kind, for records.
+    /// Kind of reference that a record states when it is held against this curve.
     pub kind: ReferenceKind,
     /// How it was obtained.
     pub obtained: Obtained,

@@ -8,13 +8,13 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{path}: {place}{message}; {remedy}")]
 pub struct ReferenceError {
-    /// File or folder.
+    /// Path of the file or folder that cannot be used.
     pub path: String,
     /// Line and key, followed by `: `; empty if the whole file is meant.
     pub place: String,
-    /// What is wrong.
+    /// What is wrong at that place, in words.
     pub message: String,
-    /// What would help.
+    /// What the user can do about it, in words.
     pub remedy: String,
 }
 

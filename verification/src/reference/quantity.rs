@@ -53,7 +53,7 @@ pub(super) fn dimensions(quantity: &str) -> Option<[Dimension; 2]> {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Unit<'a> {
     text: &'a str,
-    /// Its SI unit.
+    /// SI unit of the same dimension, such as `J/m`.
     pub(super) si: &'static str,
 }
 

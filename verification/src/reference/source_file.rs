@@ -17,7 +17,7 @@ pub enum Obtained {
     IndependentCode,
     /// Computed with this code, to recognise something in results of others.
     OwnCode,
-    /// Stated in a text.
+    /// Taken from the text of a source.
     #[default]
     Text,
     /// Put together from other folders.
@@ -30,15 +30,15 @@ pub enum Obtained {
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Slip {
-    /// Where it stands.
+    /// Place of the misprint in the source, such as the number of an equation.
     pub place: String,
-    /// What is printed.
+    /// What the source says there, in words or as a formula.
     pub printed: String,
     /// What this project uses.
     pub used: String,
 }
 
-/// One `source.toml`.
+/// Content of one `source.toml`: where the numbers of its folder come from, and what they are.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Source {
@@ -53,11 +53,11 @@ pub struct Source {
     pub url: Option<String>,
     /// How the numbers were obtained.
     pub obtained: Obtained,
-    /// Kind, for records.
+    /// Kind of reference that a record states when it is held against these numbers.
     pub kind: ReferenceKind,
-    /// What was modelled.
+    /// Model behind the numbers in words, such as plane state and phase-field model.
     pub model: String,
-    /// How finely.
+    /// Resolution of the numbers in words, such as mesh and number of points.
     pub resolution: String,
     /// What to know before comparing.
     #[serde(default)]

@@ -14,7 +14,7 @@ const MOST_PROBLEMS: usize = 100;
 pub struct Location {
     /// 0 for the file; the others in the order in which they were read.
     pub source: usize,
-    /// First byte.
+    /// First byte of the place in the text of its source.
     pub start: usize,
     /// One past the last byte.
     pub end: usize,
@@ -34,7 +34,7 @@ pub struct Problem {
     pub key: String,
     /// Where; `None` means the whole file.
     pub location: Option<Location>,
-    /// What is wrong.
+    /// What is wrong, in words and without the place.
     pub message: String,
     /// What would be right.
     pub remedy: String,
@@ -43,9 +43,9 @@ pub struct Problem {
 /// Whether a finding keeps a file from being used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Severity {
-    /// It does.
+    /// The file cannot be used.
     Error,
-    /// It does not.
+    /// The file can be used all the same.
     Warning,
 }
 
@@ -67,7 +67,7 @@ impl Source {
 pub struct Sources(Vec<Arc<Source>>);
 
 impl Sources {
-    /// The file alone.
+    /// Holds the text of one file, which messages call `name`.
     pub fn new(name: &str, text: &str) -> Self {
         Self(vec![Source::new(name, text)])
     }
@@ -78,12 +78,12 @@ impl Sources {
         self.0.len() - 1
     }
 
-    /// Name of the file.
+    /// Name of the first file, as messages show it.
     pub fn name(&self) -> &str {
         &self.0[0].name
     }
 
-    /// Text of the file.
+    /// Text of the first file, without overrides and included files.
     pub fn text(&self) -> &str {
         &self.0[0].text
     }
@@ -131,19 +131,19 @@ impl Sources {
 pub struct SceneDiagnostic {
     /// File name, or `--set` for an override.
     pub file: String,
-    /// Line, from 1.
+    /// Number of the line in the file, counted from 1.
     pub line: usize,
     /// Column in characters, from 1.
     pub column: usize,
     /// Full key path; empty if no key is involved.
     pub key: String,
-    /// What is wrong.
+    /// What is wrong, in words and without the place.
     pub message: String,
     /// What would be right; empty where the message says it.
     pub remedy: String,
-    /// Bytes in the text.
+    /// Range of bytes that is wrong, in the text that [`Self::text`] gives.
     pub span: Range<usize>,
-    /// Error or warning.
+    /// Whether it is an error or a warning.
     pub severity: Severity,
     source: Arc<Source>,
 }

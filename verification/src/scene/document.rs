@@ -16,7 +16,7 @@ const MOST_SYNTAX_ERRORS: usize = 10;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Node {
-    /// The value.
+    /// Value at this node; an array or a table holds nodes of its own.
     pub value: Value,
     /// Where the value stands; the header for a table with one, `None` for the document itself.
     #[serde(skip)]
@@ -26,11 +26,11 @@ pub struct Node {
     pub key_location: Option<Location>,
 }
 
-/// A TOML value.
+/// A TOML value; arrays and tables consist of nodes, which know their places.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Value {
-    /// Text of any kind.
+    /// Text of a string, without its quotes and with its escapes resolved.
     String(String),
     /// Number without a fraction.
     Integer(i64),
@@ -40,9 +40,9 @@ pub enum Value {
     Boolean(bool),
     /// Date or time, as written.
     Datetime(String),
-    /// Values in order.
+    /// Entries of an array, in the order of the file.
     Array(Vec<Node>),
-    /// Values by key.
+    /// Entries of a table, by key.
     Table(BTreeMap<String, Node>),
 }
 
@@ -193,7 +193,7 @@ pub fn join(prefix: &str, key: &str) -> String {
 /// A parsed file with its text, for messages.
 #[derive(Debug, Clone)]
 pub struct Document {
-    /// The tree.
+    /// Root of the tree of values: the table of the whole file.
     pub root: Node,
     pub(super) sources: Sources,
 }
@@ -255,7 +255,7 @@ impl Document {
         Ok(Node::new(Value::Table(entries(table.get_ref(), source, 0)), None))
     }
 
-    /// Text of the file.
+    /// Text of the file, as it was read.
     pub fn text(&self) -> &str {
         self.sources.text()
     }

@@ -13,7 +13,7 @@ use super::units::{self, Dimension};
 
 /// A type whose values are words of a file.
 pub trait Words: Copy + 'static {
-    /// All of them.
+    /// All words, each with the value that it stands for.
     const WORDS: &'static [(&'static str, Self)];
 }
 
@@ -30,12 +30,12 @@ impl Problems {
         Self { folder: folder.to_path_buf(), ..Self::default() }
     }
 
-    /// Notes one.
+    /// Adds a problem to those found.
     pub fn push(&self, problem: Problem) {
         self.found.borrow_mut().push(problem);
     }
 
-    /// All of them.
+    /// All problems found, in the order in which they were noted.
     pub fn into_inner(self) -> Vec<Problem> {
         self.found.into_inner()
     }
@@ -44,9 +44,9 @@ impl Problems {
 /// A value with its key path.
 #[derive(Debug, Clone)]
 pub struct Item<'a> {
-    /// The value.
+    /// The value in the tree of the document, with its place.
     pub node: &'a Node,
-    /// Its key path.
+    /// Full key path of the value in the document, such as `body.0.shape`.
     pub path: String,
     problems: &'a Problems,
 }
@@ -131,7 +131,7 @@ impl<'a> Item<'a> {
         }
     }
 
-    /// A string.
+    /// The value as text; notes a problem if it is no string.
     pub fn text(&self) -> Option<String> {
         self.node.as_str().map(String::from).or_else(|| self.wrong_kind("a string"))
     }
@@ -142,7 +142,7 @@ impl<'a> Item<'a> {
         if text.trim().is_empty() { self.fail("the text is blank", "write a text") } else { Some(text) }
     }
 
-    /// `true` or `false`.
+    /// The value as a Boolean; notes a problem if it is neither `true` nor `false`.
     pub fn flag(&self) -> Option<bool> {
         match self.node.value {
             Value::Boolean(b) => Some(b),
@@ -150,7 +150,7 @@ impl<'a> Item<'a> {
         }
     }
 
-    /// One of the words.
+    /// What the word in the file stands for; notes a problem if it is none of `words`.
     pub fn choice<T: Copy>(&self, words: &[(&str, T)]) -> Option<T> {
         let names: Vec<&str> = words.iter().map(|w| w.0).collect();
         let list = quoted(&names);

@@ -9,13 +9,13 @@ use fisura::scene::{
 /// What differs from study to study.
 #[derive(Debug, Clone)]
 pub struct PlainScene {
-    /// Background patch.
+    /// Background mesh, which the body fills.
     pub mesh: Mesh,
     /// Material of the body.
     pub material: Material,
-    /// Plane state.
+    /// Plane state, strain or stress.
     pub plane: Plane,
-    /// Mass matrix.
+    /// Kind of mass matrix, lumped or consistent.
     pub mass: Mass,
     /// Layout of the points.
     pub layout: Layout,

@@ -18,7 +18,7 @@ use super::read_load::boundary;
 use super::read_mesh::{degree, mesh};
 use super::units::Dimension;
 
-/// Keys of a scene.
+/// Keys that a scene may have at its top level.
 pub const SCENE_KEYS: [&str; 10] =
     ["title", "mesh", "analysis", "solver", "material", "body", "contact", "boundary", "start", "output"];
 
@@ -90,22 +90,22 @@ fn scene(item: &Item<'_>) -> Option<Scene> {
     Some(Scene { title, mesh, analysis, solver, materials, bodies, contact, boundaries, equilibrium, output })
 }
 
-/// A plain number.
+/// Reads a number without a unit.
 pub(super) fn number(item: &Item<'_>) -> Option<f64> {
     item.quantity(Dimension::NONE)
 }
 
-/// A length in m.
+/// Reads a length; the result is in m.
 pub(super) fn length(item: &Item<'_>) -> Option<f64> {
     item.quantity(Dimension::LENGTH)
 }
 
-/// A point in m.
+/// Reads a point `[x, y]`; the result is in m.
 pub(super) fn point(item: &Item<'_>) -> Option<[f64; 2]> {
     item.vector(Dimension::LENGTH)
 }
 
-/// A time in s.
+/// Reads a time; the result is in s.
 pub(super) fn time(item: &Item<'_>) -> Option<f64> {
     item.quantity(Dimension::TIME)
 }

@@ -49,7 +49,7 @@ fn hold(item: &Item<'_>) -> Option<Hold> {
     }
 }
 
-/// A load on an edge.
+/// Reads a traction: the edge, the stress or pressure on it, and how that changes with time.
 pub(super) fn traction(item: &Item<'_>) -> Option<Traction> {
     item.table(|fields| {
         let edge = edge(fields);

@@ -57,7 +57,7 @@ impl Dimension {
     pub const VELOCITY: Self = Self::new(0, 1, -1);
     /// Acceleration, in m/s².
     pub const ACCELERATION: Self = Self::new(0, 1, -2);
-    /// rad/s or 1/s.
+    /// Angular velocity in rad/s, or rate in 1/s.
     pub const RATE: Self = Self::new(0, 0, -1);
     /// Cycles per time, in Hz.
     pub const FREQUENCY: Self = Self { cycles: 1, ..Self::RATE };
@@ -65,7 +65,7 @@ impl Dimension {
     pub const STRESS: Self = Self::new(1, -1, -2);
     /// Mass per volume, in kg/m³.
     pub const DENSITY: Self = Self::new(1, -3, 0);
-    /// J/m² = N/m.
+    /// Energy per area, in J/m² = N/m.
     pub const ENERGY_PER_AREA: Self = Self::new(1, 0, -2);
     /// Force, in N.
     pub const FORCE: Self = Self::new(1, 1, -2);
@@ -128,7 +128,7 @@ pub struct Quantity {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{message}; {remedy}")]
 pub struct UnitError {
-    /// What is wrong.
+    /// What is wrong with the text, in words.
     pub message: String,
     /// What would be right.
     pub remedy: String,

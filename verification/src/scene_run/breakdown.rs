@@ -11,22 +11,22 @@ use serde::{Deserialize, Serialize};
 pub struct BreakdownReport {
     /// Step at which it was found.
     pub step: usize,
-    /// Time, s.
+    /// Simulated time at which it was found, s.
     pub time_s: f64,
-    /// Place, m.
+    /// Position `[x, y]` at which the run broke down, m.
     pub place_m: [Option<f64>; 2],
     /// Number of the point there, in its body, where a point stands for the place.
     pub point: Option<usize>,
-    /// What happened.
+    /// Description of the failure in words.
     pub what: String,
     /// Likely cause and remedy.
     pub likely_cause: String,
     /// Row of the history at that moment, by column: energies, momenta, closure. Absent if the run never
-    /// started, as all that follows.
+    /// started.
     pub row: Option<serde_json::Map<String, serde_json::Value>>,
     /// Material points, and how many carry a number that is not finite.
     pub points: Option<usize>,
-    /// See `points`.
+    /// Number of material points that carry a number that is not finite.
     pub points_not_finite: Option<usize>,
     /// Extremes of finite numbers.
     pub extremes: Option<Extremes>,
@@ -42,7 +42,7 @@ pub struct BreakdownReport {
 pub struct Extremes {
     /// Speed of the fastest control point, m/s.
     pub largest_speed_m_per_s: Option<f64>,
-    /// Its position, m.
+    /// Position `[x, y]` of the fastest control point, m.
     pub fastest_m: [Option<f64>; 2],
     /// Largest magnitude of a strain component.
     pub largest_strain: Option<f64>,
@@ -69,7 +69,7 @@ pub struct WorstPoint {
     pub stress_pa: [Option<f64>; 3],
     /// History energy, J/m³.
     pub history_j_per_m3: Option<f64>,
-    /// Phase field.
+    /// Phase field at the point; absent if its body does not fracture or the value is not finite.
     pub phase_field: Option<f64>,
 }
 

@@ -119,7 +119,7 @@ struct Head {
     program: String,
     scene: String,
     title: String,
-    /// In bytes.
+    /// Length of these lines with their line ends, in bytes: the binary part starts there.
     length: usize,
 }
 

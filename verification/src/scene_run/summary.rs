@@ -14,17 +14,17 @@ use crate::output::history::Table;
 pub struct Summary {
     /// Title of the scene.
     pub title: String,
-    /// What was modelled.
+    /// Models of the scene, such as `momentum` and `phase field`.
     pub models: Vec<String>,
-    /// Material points.
+    /// Number of material points.
     pub particles: usize,
     /// Control points with mass.
     pub control_points: usize,
-    /// Steps taken.
+    /// Number of time steps taken.
     pub steps: usize,
     /// Steps the run was to take.
     pub planned_steps: usize,
-    /// Time step, s.
+    /// Time step that the run was planned with, s.
     pub time_step_s: Option<f64>,
     /// Critical step of the undamaged body, s; absent if nothing can move.
     pub critical_step_s: Option<f64>,
@@ -56,7 +56,7 @@ pub struct Summary {
 pub struct Stages {
     /// Points, shape functions, critical step, initial phase field.
     pub preparation: f64,
-    /// Time steps.
+    /// All time steps, without the samples and pictures between them.
     pub steps: f64,
     /// Rows of the history.
     pub samples: f64,
@@ -69,14 +69,14 @@ pub struct Stages {
 pub struct BreakdownSummary {
     /// Step at which it was found.
     pub step: usize,
-    /// Time, s.
+    /// Simulated time at which it was found, s.
     pub time_s: f64,
-    /// Place, m.
+    /// Position `[x, y]` at which the run broke down, m.
     pub place_m: [f64; 2],
     /// Number of the point there, in its body, where a point stands for the place.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub point: Option<usize>,
-    /// What happened.
+    /// Description of the failure in words.
     pub what: String,
     /// Likely cause and remedy.
     pub likely_cause: String,

@@ -12,7 +12,7 @@ pub(super) struct Followed<'a> {
     folder: &'a OutputFolder,
     /// Absent until there is a row.
     file: Option<Growing>,
-    /// Rows in it.
+    /// Number of rows of the history that the file holds already.
     rows: usize,
 }
 

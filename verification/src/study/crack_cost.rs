@@ -33,7 +33,7 @@ const HEIGHT: f64 = 2.0;
 const BROKEN: f64 = 1e9;
 /// Degree and points per span and direction.
 const RULES: [(usize, usize); 4] = [(1, 2), (2, 2), (2, 3), (3, 3)];
-/// Spans over l0.
+/// Lengths of a span over the length scale l0.
 const SPANS: [f64; 3] = [1.0, 0.5, 0.25];
 /// Broken rows: column of the table, and their numbers right of the middle knot for n points per span.
 const ROWS: [(&str, Rows); 3] = [
@@ -63,7 +63,7 @@ pub(super) fn study(_case: &Case, _scenes: &[CaseScene], findings: &mut Findings
 struct Setting {
     degree: usize,
     points: usize,
-    /// Span over l0.
+    /// Length of a span over the length scale l0.
     span: f64,
     name: &'static str,
     rows: Rows,

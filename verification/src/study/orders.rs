@@ -65,7 +65,7 @@ pub struct Norm {
     pub floor: f64,
 }
 
-/// What is refined.
+/// What becomes finer from level to level: the mesh or the time step.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Refined {
     /// The mesh in this many dimensions; unknowns grow as `h^-dimensions`.
@@ -93,7 +93,7 @@ pub struct Convergence {
     pub deviations: Vec<String>,
     /// Where the orders of theory come from.
     pub theory: String,
-    /// What is refined.
+    /// Whether the levels differ in the mesh or in the time step.
     pub refined: Refined,
     /// Norms, in the order of [`Level::errors`].
     pub norms: Vec<Norm>,

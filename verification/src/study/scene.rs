@@ -21,9 +21,9 @@ use crate::watch::{self, Stopped};
 /// What figures need to know of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunInfo {
-    /// Suite of the case.
+    /// Suite of the case that was run.
     pub suite: String,
-    /// Name of the case.
+    /// Name of the case in its suite.
     pub case: String,
     /// Variant within the case, or empty.
     pub variant: String,
@@ -53,7 +53,7 @@ impl RunInfo {
 /// A stored phase-field picture.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PictureInfo {
-    /// Time, s.
+    /// Simulated time of the picture, s.
     pub time: f64,
     /// Raster, relative to the results folder.
     pub series: String,
@@ -68,7 +68,7 @@ pub struct FinishedScene {
     pub case_scene: CaseScene,
     /// History, pictures, breakdown.
     pub run: SceneRun,
-    /// What was computed.
+    /// Numbers of particle-steps, and of solves and iterations of the phase field.
     pub work: Work,
     /// Time that the run took.
     pub timing: Timing,

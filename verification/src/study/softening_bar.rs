@@ -57,7 +57,7 @@ pub(super) fn study(case: &Case, scenes: &[CaseScene], findings: &mut Findings) 
     Ok(())
 }
 
-/// A bar along x.
+/// A bar along x that cracks in its middle: lengths in m, the tensile strength in Pa.
 struct Bar<'a> {
     scene: &'a CaseScene,
     material: &'a Material,

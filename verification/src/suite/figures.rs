@@ -24,7 +24,7 @@ struct Quantity {
     column: String,
     #[serde(default)]
     derived: bool,
-    /// SI to the axis.
+    /// Factor from SI to the unit of the axis; 1 if absent.
     #[serde(default = "one")]
     scale: f64,
     /// Reference curves with this quantity are drawn.

@@ -27,7 +27,7 @@ pub enum MergeError {
     Parts {
         /// What is wrong, with the folders.
         message: String,
-        /// What would help.
+        /// What the user can do about it, in words.
         remedy: &'static str,
     },
     /// Reference data are wrong, or a file cannot be read or written.

@@ -32,7 +32,7 @@ pub struct Plan {
     pub case_glob: Option<String>,
     /// Changes of `--set`.
     pub set: Vec<String>,
-    /// Number of slices.
+    /// Number of slices into which the plan is divided.
     pub slices: usize,
     /// Fingerprint of the reference data.
     pub reference_data: String,
@@ -43,7 +43,7 @@ pub struct Plan {
 /// What the caller knows of a plan beside its cases.
 #[derive(Debug, Clone, Copy)]
 pub struct Invocation<'a> {
-    /// What was selected.
+    /// Suites, cases and tier that were selected.
     pub selection: &'a Selection,
     /// Changes of `--set`.
     pub set: &'a [String],
@@ -109,7 +109,7 @@ impl Plan {
 pub struct Part {
     /// Name and version of the format, [`PART_SCHEMA`].
     pub schema: String,
-    /// Which slice.
+    /// Number of the slice, and how many slices there are.
     pub slice: Slice,
     /// What it is a slice of.
     pub plan: Plan,

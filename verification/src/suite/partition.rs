@@ -13,7 +13,7 @@ use crate::case::Case;
 /// One slice of a plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Slice {
-    /// Which one, from 1.
+    /// Number of the slice, from 1 to `count`.
     pub index: usize,
     /// How many there are.
     pub count: usize,

@@ -26,7 +26,7 @@ const BY_SOME: [&str; 5] = ["column", "from", "to", "at", "against"];
 /// A case that can run.
 #[derive(Debug, Clone)]
 pub struct Prepared {
-    /// Its scenes.
+    /// All scenes of the case, one for each combination of axis values and variant.
     pub scenes: Vec<CaseScene>,
     /// Its records, in order.
     pub records: Vec<Planned>,

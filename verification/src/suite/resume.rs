@@ -13,7 +13,7 @@ use crate::output::fingerprint::{fingerprint, folder_fingerprint};
 
 const FOLDER: &str = "partial/";
 
-/// Outcomes on disk.
+/// Outcomes of finished cases, stored in `partial/` of the results folder.
 #[derive(Debug)]
 pub(super) struct Store {
     out: Arc<OutputFolder>,

@@ -26,7 +26,7 @@ impl Seconds {
         Self { path: Some(path), known: Mutex::new(sound.collect()) }
     }
 
-    /// Of a case.
+    /// Expected wall time of a case, s: the remembered one, else that of the case file.
     pub fn of(&self, case: &Case) -> f64 {
         let known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         known.get(&case.id()).copied().unwrap_or(case.seconds)

@@ -19,7 +19,7 @@ pub struct Selection {
 /// A case file that is wrong.
 #[derive(Debug, Clone)]
 pub struct Malformed {
-    /// Suite: its folder.
+    /// Suite of the case: the name of the folder that holds the file.
     pub suite: String,
     /// Id of the case: `suite/name`.
     pub id: String,

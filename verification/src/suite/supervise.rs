@@ -19,7 +19,7 @@ const GRACE: Duration = Duration::from_secs(2);
 /// How supervised work ended.
 #[derive(Debug, PartialEq)]
 pub(super) enum Ended<T> {
-    /// Within its time.
+    /// The work ended within its time and gave this.
     InTime(T),
     /// When it was asked to: what it has until then.
     Stopped(T),
@@ -27,7 +27,7 @@ pub(super) enum Ended<T> {
     Broken(String),
 }
 
-/// Watches over work.
+/// Runs work on threads of its own and limits its time.
 pub(super) struct Supervisor<'a> {
     /// Of the pool in which it runs.
     pub threads: usize,
@@ -37,14 +37,14 @@ pub(super) struct Supervisor<'a> {
     pub limit: Duration,
     /// Told the finished fraction now and then.
     pub advanced: &'a dyn Fn(f64),
-    /// Told once.
+    /// Called once, when the work takes longer than `slow`.
     pub is_slow: &'a dyn Fn(),
-    /// Told once.
+    /// Called once, when the work takes longer than `limit`.
     pub is_late: &'a dyn Fn(),
 }
 
 impl Supervisor<'_> {
-    /// Runs `work`.
+    /// Runs `work` and waits until it ends or is left behind.
     pub(super) fn run<T: Send + 'static>(&self, work: impl FnOnce() -> T + Send + 'static) -> Ended<T> {
         watch::note_panics();
         let watch = Arc::new(Watch::default());
@@ -99,7 +99,7 @@ impl Supervisor<'_> {
     }
 }
 
-/// What a panic says.
+/// Message of a panic in words, made from its payload.
 fn words(payload: &(dyn std::any::Any + Send)) -> String {
     let text = payload.downcast_ref::<&str>().map(ToString::to_string);
     let text = text.or_else(|| payload.downcast_ref::<String>().cloned());

@@ -17,7 +17,7 @@ pub(super) struct Tried {
     pub points: f64,
     /// What its steps took.
     pub trial: Trial,
-    /// Its size.
+    /// Numbers of points and heap memory of the coarser scene.
     pub extent: Extent,
     /// Memory of this process before and its peak, 10⁶ bytes; none where the system does not tell.
     peaks_mb: Option<[f64; 2]>,

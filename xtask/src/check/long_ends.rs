@@ -25,7 +25,7 @@ const SIDES: [(&str, Side, usize, bool); 4] = [
 /// What `mesh.long_ends` would gain.
 #[derive(Debug, Serialize)]
 pub(super) struct LongEnds {
-    /// Value of the key.
+    /// Names of the sides, as the key `mesh.long_ends` takes them.
     sides: Vec<&'static str>,
     /// Critical step over the present one.
     times: f64,

@@ -16,13 +16,13 @@ use crate::{console, progress};
 
 /// What is to be run, and on what.
 pub struct Campaign<'a> {
-    /// Faults to plant.
+    /// Faults that are planted, one in each run.
     pub faults: &'a [&'static Fault],
     /// Cases of the quick tier.
     pub cases: &'a [Case],
-    /// What is known.
+    /// Cells that are known; new ones are added here.
     pub store: &'a Store<'a>,
-    /// Runs jobs.
+    /// Starts the processes in which the cases run.
     pub runner: &'a Runner,
     /// Flags that all commands have.
     pub common: &'a Common,

@@ -23,7 +23,7 @@ pub const FOLDER: &str = "cells/";
 pub struct Cell {
     /// The fault; none in a sound run.
     pub fault: Option<String>,
-    /// Id of the case.
+    /// Id of the case: `suite/name`.
     pub case: String,
     key: String,
     /// Wall time on one thread, s.

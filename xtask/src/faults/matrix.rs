@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::cells::Store;
 use super::table::{Fault, faults as all, reason_to_stay};
 
-/// A cell.
+/// What is known of one case with one fault.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum State {
@@ -31,11 +31,11 @@ pub enum State {
 pub struct Idle {
     /// Id of the check without its variant: `suite/case/quantity`.
     check: String,
-    /// Why it stays.
+    /// Why it may stay green, as `table.toml` says; absent if it says nothing.
     reason: Option<&'static str>,
 }
 
-/// The matrix.
+/// What every fault does to every case, and which checks no fault turns red.
 #[derive(Debug, Serialize)]
 pub struct Matrix {
     faults: Vec<&'static str>,

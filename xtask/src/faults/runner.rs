@@ -18,11 +18,11 @@ use crate::failure::Failure;
 /// What a process says of a case it has run, on a line of its standard output.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub struct Report {
-    /// Id of the case.
+    /// Id of the case: `suite/name`.
     pub case: String,
-    /// Wall time, s.
+    /// Wall time of the case, s.
     pub seconds: f64,
-    /// Its records.
+    /// Id and status of each record of the case.
     pub records: Vec<(String, Status)>,
     /// Faults whose sites it passed.
     pub passed: Vec<String>,
@@ -43,7 +43,7 @@ pub struct Job {
 /// Told what became of a case, and in which folder its series are until this returns.
 pub type Tell<'a> = &'a (dyn Fn(Option<&'static str>, &str, Ending, &Path) -> Result<(), Failure> + Sync);
 
-/// Runs jobs.
+/// Runs jobs in processes side by side, until a deadline.
 #[derive(Debug)]
 pub struct Runner {
     program: PathBuf,

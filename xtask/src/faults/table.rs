@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 pub struct Fault {
     /// Name, as at its sites.
     pub id: String,
-    /// What is wrong.
+    /// Description of the error in words.
     pub what: String,
     /// Cases of the quick tier it is run on.
     pub cases: Vec<String>,

@@ -32,7 +32,7 @@ pub(crate) struct Arc {
 /// A place on a boundary.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BoundaryPlace {
-    /// Where it is, m.
+    /// Position on the boundary, m.
     pub position: [f64; 2],
     /// Outward unit normal.
     pub normal: [f64; 2],
@@ -70,7 +70,7 @@ impl Arc {
         Self { powers: [a, s, square, cube], lengths: self.lengths }
     }
 
-    /// Position at t, m.
+    /// Position on the arc at the parameter t from 0 to 1, m.
     pub(crate) fn position(&self, t: f64) -> [f64; 2] {
         let [c0, c1, c2, c3] = self.powers;
         [0, 1].map(|d| c0[d] + t * (c1[d] + t * (c2[d] + t * c3[d])))
@@ -93,7 +93,7 @@ impl Arc {
         [0, 1].map(|d| 2.0 * c2[d] + t * 6.0 * c3[d])
     }
 
-    /// Its Gauss points.
+    /// The Gauss points of `rule` on the arc, with the lengths that they stand for at t = 0.
     pub(crate) fn places<'a>(&'a self, rule: &'a Rule) -> impl Iterator<Item = BoundaryPlace> + 'a {
         let place = |(&t, &length)| BoundaryPlace { position: self.position(t), normal: self.normal(t), length };
         rule.points.iter().zip(&self.lengths).map(place)
@@ -162,9 +162,9 @@ impl Arc {
 /// Boundary of a body now.
 #[derive(Debug, Clone)]
 pub(crate) struct Outline {
-    /// Its arcs.
+    /// Arcs of the boundary, in their order along it.
     pub arcs: Vec<Arc>,
-    /// Boxes around them.
+    /// Lower left and upper right corner of a box around each arc, m.
     pub boxes: Vec<[[f64; 2]; 2]>,
     /// κ of the body, Pa/m; infinite if it is rigid.
     pub spring: f64,
@@ -215,7 +215,7 @@ impl Outline {
     }
 }
 
-/// Rule along an arc.
+/// Gauss rule for integrals along an arc of a body that deforms.
 pub(crate) fn rule() -> Rule {
     Rule::new(Layout::Gauss, POINTS)
 }
@@ -232,9 +232,9 @@ pub(crate) fn rules() -> [Rule; 2] {
 /// The nearest place of a boundary.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Closest {
-    /// Distance, m.
+    /// Distance of the place from the given position, m.
     pub distance: f64,
-    /// Where it is, m.
+    /// Position on the boundary, m.
     pub position: [f64; 2],
     /// Unit vector towards it.
     pub direction: [f64; 2],

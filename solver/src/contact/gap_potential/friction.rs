@@ -35,7 +35,7 @@ use crate::linear_algebra::vectors::dot;
 /// A Gauss point of a boundary that is inside another body.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ContactPoint {
-    /// Bodies a and b.
+    /// Numbers of the body a, whose boundary has the Gauss point, and of the body b, in which it lies.
     pub bodies: [usize; 2],
     /// Its number on the arc of a.
     pub number: usize,

@@ -35,7 +35,7 @@ enum State {
 
 /// Normal and tangential velocities in the order of the constraints.
 struct Equations {
-    /// A, m/kg.
+    /// Matrix A: change of each velocity per impulse, m/kg.
     responses: DMatrix<f64>,
     /// Velocities without impulses, the normal ones less those allowed, m/s.
     free: DVector<f64>,

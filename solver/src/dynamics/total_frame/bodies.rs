@@ -28,7 +28,7 @@ use crate::splines::spline::ROUND_OFF;
 /// Bodies in the total frame.
 #[derive(Debug)]
 pub struct TotalBodies {
-    /// Those that deform.
+    /// Bodies that deform, in the order of the scene; or the levels of one body on a refined mesh.
     pub(crate) bodies: Vec<TotalFrame>,
     pub(crate) contact: Option<GapPotential>,
     /// If they are the levels of one body on a mesh that is refined.
@@ -254,7 +254,7 @@ impl TotalBodies {
         self.bodies.iter().filter_map(TotalFrame::inverted_point).reduce(InvertedPoint::worse)
     }
 
-    /// Elastic energy, J.
+    /// Elastic energy of all bodies for the thickness of the scene, J.
     pub(crate) fn elastic_energy(&self) -> f64 {
         self.bodies.iter().map(TotalFrame::elastic_energy).sum()
     }

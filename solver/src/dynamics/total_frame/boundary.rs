@@ -54,7 +54,7 @@ pub(crate) fn arcs_at_rest(shape: &Shape, mesh: &Mesh, shortest: f64) -> Vec<Arc
 /// A place on the boundary whose position and tangent follow the control points.
 #[derive(Debug, Clone)]
 struct BoundaryNode {
-    /// At t = 0, m.
+    /// Position at t = 0, m.
     position: [f64; 2],
     tangent: [f64; 2],
     /// Control point, share in the position, and in the tangent.
@@ -122,7 +122,7 @@ pub(super) struct MaterialBoundary {
     nodes: Vec<BoundaryNode>,
     /// Node at which each arc begins, and the arc at t = 0; it ends at the next node.
     arcs: Vec<(usize, Arc)>,
-    /// κ, Pa/m.
+    /// Stiffness κ of contact, Pa/m.
     stiffness: f64,
     friction: bool,
     rule: Rule,
@@ -162,7 +162,7 @@ impl MaterialBoundary {
         Ok(Self { nodes, arcs, stiffness, friction, rule })
     }
 
-    /// Its arcs at t = 0.
+    /// Arcs of the boundary at t = 0, in their order along it.
     pub(super) fn arcs_at_rest(&self) -> Vec<Arc> {
         self.arcs.iter().map(|(_, arc)| *arc).collect()
     }

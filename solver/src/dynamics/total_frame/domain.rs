@@ -14,7 +14,7 @@ use crate::splines::patch::{Patch, PointFunctions};
 pub(crate) struct Domain {
     /// Name of its column.
     pub column: String,
-    /// Radius, m.
+    /// Radius of the domain about the tip, m.
     pub radius: f64,
     /// Where the tip is if it does not move, or before there is a crack, m.
     pub tip: [f64; 2],
@@ -71,7 +71,7 @@ pub fn column(integral: &JIntegral) -> String {
 /// A place and the shape functions there.
 #[derive(Debug, Clone)]
 pub(super) struct ProbePlace {
-    /// Its name.
+    /// Name of the probe, as the scene gives it.
     pub name: String,
     /// Functions with the control points of its side of a slit.
     pub functions: PointFunctions,

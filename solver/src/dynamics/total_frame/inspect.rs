@@ -171,25 +171,3 @@ impl TotalFrame {
         (values, present)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use crate::Simulation;
-    use crate::example::pulled_plate;
-    use crate::scene::{Crack, CrackKind};
-
-    /// What fills up a batch of points, or lies beside a slit, is no material.
-    #[test]
-    fn only_material_is_distorted() {
-        let mut scene = pulled_plate(1e6);
-        scene.bodies[0].cracks = vec![Crack { points: vec![[0.0, 0.0025], [0.004, 0.0025]], kind: CrackKind::Slit }];
-        let mut simulation = Simulation::new(&scene).unwrap();
-        for _ in 0..60 {
-            simulation.step().unwrap();
-        }
-        let frame = simulation.total_frame().unwrap();
-        let (_, most) = frame.distorted_beyond(0.0).unwrap();
-        let ratio = frame.largest_distortion() / most.size();
-        assert!((ratio - 1.0).abs() <= 1e-3, "{ratio}");
-    }
-}

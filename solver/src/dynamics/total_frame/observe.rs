@@ -156,7 +156,7 @@ impl TotalFrame {
         (self.thickness * masses.iter().sum::<f64>(), [momentum(0), momentum(1)])
     }
 
-    /// Elastic energy, J.
+    /// Elastic energy for the thickness of the scene, J.
     pub fn elastic_energy(&self) -> f64 {
         self.elastic_energy * self.thickness
     }
@@ -166,7 +166,7 @@ impl TotalFrame {
         self.ledger.external_work * self.thickness
     }
 
-    /// Time, s.
+    /// Time since the start of the run, s.
     pub fn time(&self) -> f64 {
         self.time
     }

@@ -87,7 +87,7 @@ impl AffineVelocities {
         cut(&mut self.gradients, ranges).into_iter().map(move |gradients| (view, gradients))
     }
 
-    /// Their fit.
+    /// How the velocity gradients follow from control values, with the present Greville points.
     pub(super) fn view(&self) -> AffineView<'_> {
         AffineView { fit: self.fit, greville: &self.greville }
     }

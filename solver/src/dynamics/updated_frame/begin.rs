@@ -197,7 +197,7 @@ fn thickening(material: &Material, plane: Plane) -> f64 {
     }
 }
 
-/// Centre of mass, m.
+/// Present centre of mass of points of equal density, m.
 pub(super) fn center_of_mass<'a>(points: impl Iterator<Item = &'a Point> + Clone) -> [f64; 2] {
     let volume: f64 = points.clone().map(|p| p.volume).sum();
     [0, 1].map(|d| points.clone().map(|p| p.volume * p.position[d]).sum::<f64>() / volume)

@@ -60,14 +60,14 @@ pub struct ImposedEnergy {
 }
 
 impl ImposedEnergy {
-    /// Both together.
+    /// Sum of two such energies, term by term.
     pub(super) fn plus(self, other: Self) -> Self {
         Self { work: self.work + other.work, loss: self.loss + other.loss }
     }
 }
 
 impl NodalFields {
-    /// Fields of zeros.
+    /// Fields of zeros on the control points of a patch, some of which the sides hold.
     pub(crate) fn new(patch: &Patch, constraints: Constraints) -> Self {
         let grid = patch.control_grid();
         let vectors = || [grid.zeros(), grid.zeros()];
@@ -141,7 +141,7 @@ impl NodalFields {
         self.constraints.remove(&mut self.acceleration);
     }
 
-    /// `v ← v + dt a`.
+    /// Changes the velocity by the acceleration over `dt` seconds: `v ← v + dt a`.
     pub fn kick(&mut self, dt: f64) {
         for (velocity, acceleration) in self.velocity.iter_mut().zip(&self.acceleration) {
             for (v, a) in velocity.iter_mut().zip(acceleration) {

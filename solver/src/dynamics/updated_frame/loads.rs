@@ -31,7 +31,7 @@ pub(crate) struct SurfaceLoad {
     points: Vec<MovingSurfacePoint>,
     /// Whether it is a pressure.
     follows: bool,
-    /// Its factor.
+    /// Factor over time by which the full strength is multiplied.
     pub factor: KickFactor,
     /// Power at full strength during the last motion, of the forces before and after it, W/m.
     powers: [f64; 2],

@@ -62,7 +62,7 @@ pub(crate) struct TransferLosses {
 }
 
 impl TransferLosses {
-    /// All of it.
+    /// Sum of all parts: the transfer loss so far, J/m.
     pub(super) fn sum(&self) -> f64 {
         self.kinetic + self.power + self.imposed + self.phase_field + self.partition + self.step
     }

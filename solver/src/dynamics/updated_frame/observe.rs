@@ -46,7 +46,7 @@ impl UpdatedFrame {
         Sample { bodies: recorded, fragments: self.fragment_areas(), ..sample.for_thickness(self.thickness) }
     }
 
-    /// Time, s.
+    /// Time since the start of the run, s.
     pub fn time(&self) -> f64 {
         self.fields.first().map_or(0.0, |field| field.time)
     }
@@ -76,7 +76,7 @@ impl UpdatedFrame {
         self.fields.iter().find_map(|field| field.surface.as_ref()?.opened)
     }
 
-    /// Elastic energy, J.
+    /// Elastic energy of all bodies for the thickness of the scene, J.
     pub fn elastic_energy(&self) -> f64 {
         self.fields.iter().map(|field| field.elastic_energy()).sum()
     }
@@ -156,7 +156,8 @@ impl DiscreteField {
         }
     }
 
-    /// Tip of the crack.
+    /// Tip of the crack: the broken place that is furthest from where the crack begins; `None` without a
+    /// crack.
     pub fn crack_tip(&self) -> Option<CrackTip> {
         let phase = self.fracture.as_ref()?.field.control_values();
         let gradient = |position| self.patch.evaluate(phase, position).unwrap_or_default().gradient;
@@ -190,7 +191,7 @@ impl DiscreteField {
         named.reduce(InvertedPoint::worse)
     }
 
-    /// Elastic energy, J.
+    /// Elastic energy for the thickness of the scene, J.
     pub fn elastic_energy(&self) -> f64 {
         self.elastic_energy * self.thickness
     }
@@ -206,7 +207,7 @@ impl DiscreteField {
         [0, 1].map(|d| self.density * self.thickness * sum(d))
     }
 
-    /// Mass, kg.
+    /// Mass of the points for the thickness of the scene, kg.
     pub fn mass(&self) -> f64 {
         self.density * self.thickness * self.points.iter().map(|p| p.volume).sum::<f64>()
     }
@@ -222,7 +223,7 @@ impl DiscreteField {
         (speed, self.nodes.position(at))
     }
 
-    /// Time, s.
+    /// Time since the start of the run, s.
     pub fn time(&self) -> f64 {
         self.time
     }

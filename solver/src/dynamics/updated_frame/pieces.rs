@@ -52,7 +52,7 @@ impl<'a> Pieces<'a> {
         Some(pieces)
     }
 
-    /// Piece of a point.
+    /// Number of the piece that a point belongs to.
     pub(super) fn of(&self, at: usize) -> u32 {
         self.of[at].unwrap_or_default()
     }

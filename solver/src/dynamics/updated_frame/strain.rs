@@ -28,7 +28,7 @@ impl StrainUpdate for SmallStrain {
     }
 }
 
-/// Hencky strain.
+/// Hencky strain from the deformation gradient, for finite kinematics.
 #[derive(Debug)]
 pub struct FiniteStrain<'a> {
     /// Displacement gradients `F − I` of the points of the strip.

@@ -55,15 +55,15 @@ pub(super) use walk;
 
 /// P2G: mass, momentum and internal force of the points of a strip.
 pub struct PointsToGrid<'a> {
-    /// Background patch.
+    /// Part of the background patch that the nodal fields of the body cover.
     pub patch: &'a Patch,
     /// Layout of the control points.
     pub grid: ControlGrid,
-    /// Density, kg/m³.
+    /// Density of the undeformed material, kg/m³.
     pub density: f64,
     /// Cells of the strip.
     pub cells: &'a [Cell],
-    /// All points.
+    /// All points of the body, sorted by span.
     pub points: &'a [Point],
     /// Their velocity gradients, if they carry such.
     pub affine: Option<(AffineView<'a>, &'a [Gradient])>,
@@ -123,11 +123,11 @@ impl PointsToGrid<'_> {
 /// G2P: velocity, position and strain of the points of a strip, and stress and energy where nothing
 /// fractures.
 pub struct GridToPoints<'a, K> {
-    /// Background patch.
+    /// Part of the background patch that the nodal fields of the body cover.
     pub patch: &'a Patch,
     /// Layout of the control points.
     pub grid: ControlGrid,
-    /// Time step, s.
+    /// Length of the time step, s.
     pub dt: f64,
     /// Velocity of the control points with which the points move and strain, m/s, and what the points take up
     /// into their velocity, m/s.

@@ -64,7 +64,7 @@ pub(crate) struct VelocityTransfer {
 }
 
 impl VelocityTransfer {
-    /// Nothing yet.
+    /// A transfer before the first step: points keep their velocity, and the increment is zero.
     pub(crate) fn new(grid: ControlGrid, transfer: Transfer) -> Self {
         Self { increment: [grid.zeros(), grid.zeros()], kept_fraction: 1.0, transfer, fields: Vec::new() }
     }
@@ -115,13 +115,13 @@ fn add(to: &mut VectorField, factor: f64, from: &VectorField) {
 /// Points on a grid, and the lumped mass they give it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Smoothing<'a> {
-    /// Background patch.
+    /// Part of the background patch that the nodal fields of the body cover.
     pub patch: &'a Patch,
     /// Order of the points.
     pub cells: &'a Cells,
-    /// The points.
+    /// All points of the body, sorted by span.
     pub points: &'a [Point],
-    /// Density, kg/m³.
+    /// Density of the undeformed material, kg/m³.
     pub density: f64,
     /// Lumped mass of the control points, kg/m.
     pub mass: &'a [f64],

@@ -25,7 +25,7 @@ pub fn side_by_side<const N: usize>(fields: [&[f64]; N], together: &mut Vec<[f64
 pub struct Window<'a, T, const N: usize> {
     /// Control row the fields begin with.
     pub first_row: usize,
-    /// The fields.
+    /// Rows of each field that the strip may write, from that row on.
     pub fields: [&'a mut [T]; N],
 }
 

@@ -9,7 +9,7 @@ use crate::linear_algebra::lane::{LANES, Lane, Scalar, Vectorised, add_product};
 use crate::linear_algebra::stencil::Offset;
 use crate::linear_algebra::terms::Terms;
 
-/// A block of rows.
+/// A block of rows of the factor, with the right-hand side `r` and the solution `out`.
 pub(super) struct SolveBlock<'a, T> {
     pub grid: ControlGrid,
     pub offsets: &'a [Offset],
@@ -205,8 +205,7 @@ impl<T: Scalar> Vectorised for SolvePair<'_, T> {
             2 => self.solve::<FMA, 1>(),
             3 => self.solve::<FMA, 2>(),
             4 => self.solve::<FMA, 3>(),
-            5 => self.solve::<FMA, 4>(),
-            _ => self.solve::<FMA, 5>(),
+            _ => self.solve::<FMA, 4>(),
         }
     }
 }

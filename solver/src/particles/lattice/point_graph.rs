@@ -23,9 +23,9 @@ const TRIED: usize = 4;
 pub(super) struct Group {
     /// First control point of the span.
     pub first: FunctionIndex,
-    /// Row of spans.
+    /// Index of the row of spans that the span lies in, from below.
     pub row: usize,
-    /// Its points.
+    /// Numbers of the points in the group, all of one span.
     pub places: Vec<PointIndex>,
     /// Component of every function of the span; none of one that is whole.
     pub functions: Vec<(FunctionIndex, Option<usize>)>,

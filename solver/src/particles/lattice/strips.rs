@@ -12,7 +12,7 @@ use crate::linear_algebra::lane::{LANES, Lane};
 use crate::splines::patch::Patch;
 
 impl Lattice {
-    /// Batches of tables.
+    /// Number of batches that tables describe; those of cut spans follow.
     fn table_batches(&self) -> usize {
         self.rows.len() * self.tiles.len() * self.points_per_span()
     }
@@ -22,7 +22,7 @@ impl Lattice {
         self.table_batches() + self.cut.len()
     }
 
-    /// Number of strips.
+    /// Number of strips: those of tables and, behind them, those of cut spans.
     pub fn strips(&self) -> usize {
         self.table_strips() + self.cut.len().div_ceil(self.strip_batches())
     }
@@ -89,7 +89,7 @@ impl Lattice {
         self.cut = batches;
     }
 
-    /// Number of cells.
+    /// Number of cells; each has as many batches as a span has points.
     pub(crate) fn cells(&self) -> usize {
         self.batches() / self.points_per_span()
     }

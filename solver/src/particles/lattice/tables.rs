@@ -33,10 +33,10 @@ pub struct Tile {
     pub position: Vec<Lane>,
 }
 
-/// One row of spans.
+/// One row of spans: shape functions in y, weights and positions of its points.
 #[derive(Debug, Clone)]
 pub struct Row {
-    /// First control row.
+    /// Control row of the first shape function; function k belongs to row `first + k`.
     pub first: usize,
     /// Rows by which that lies behind the one of the patch: not 0 in a sheet.
     pub lift: usize,
@@ -148,11 +148,11 @@ impl Mapping {
 pub(crate) struct MappedPoint {
     /// Inverse 1/W of the weight function.
     pub inverse_weight: Lane,
-    /// `∂W/∂ξ_d / W`.
+    /// Logarithmic derivatives `∂W/∂ξ_d / W` of the weight function in both parameters, 1/unit of the knots.
     pub weight_slope: [Lane; 2],
     /// `[∂ξ/∂x, ∂ξ/∂y, ∂η/∂x, ∂η/∂y]`, 1/m.
     pub inverse_jacobian: [Lane; 4],
-    /// Position, m.
+    /// Positions of the points at t = 0 in x and in y, m.
     pub position: [Lane; 2],
 }
 
@@ -205,7 +205,7 @@ pub(crate) struct CutBatch {
     pub lift: usize,
     /// Weights, m²; zero where there is no point.
     pub weight: Lane,
-    /// Positions, m.
+    /// Positions of the points at t = 0 in x and in y, m.
     pub position: [Lane; 2],
     /// Values of the basis functions in x and in y.
     pub value: [[Lane; MAX_ORDER]; 2],

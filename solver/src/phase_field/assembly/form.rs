@@ -6,7 +6,7 @@ use crate::linear_algebra::lane::Lane;
 /// What is integrated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Integrand {
-    /// `N_I N_J`.
+    /// Product `N_I N_J` of the values of two shape functions.
     Mass,
     /// `grad N_I · grad N_J`.
     Diffusion,

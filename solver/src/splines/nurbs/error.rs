@@ -29,9 +29,9 @@ pub enum NurbsError {
     Folded {
         /// Span in each direction.
         span: [usize; 2],
-        /// Gauss point.
+        /// Parameters of a Gauss point where it is folded, in the unit of the knots.
         parameters: [f64; 2],
-        /// Determinant there.
+        /// Jacobian determinant at that Gauss point: not positive, or not finite.
         determinant: f64,
     },
     /// A rectangle or a sector of a ring without area.
@@ -47,13 +47,13 @@ pub enum LocateError {
     Outside {
         /// Nearest point of the patch that the search met, m.
         nearest: [f64; 2],
-        /// Its distance, m.
+        /// Distance of that nearest point from the given point, m.
         distance: f64,
     },
     /// The point is on the patch, where the geometry is folded or collapsed.
     #[error("the geometry is folded or collapsed there: the Jacobian determinant is {determinant:e}")]
     Folded {
-        /// Determinant there.
+        /// Jacobian determinant at the point: about zero, negative or not a number.
         determinant: f64,
     },
     /// NaN or infinite point.

@@ -41,7 +41,7 @@ impl RationalFunctions {
 /// Image of a pair of parameters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapPoint {
-    /// Position, m.
+    /// Position x(ξ) of the image, m.
     pub position: [f64; 2],
     /// `jacobian[i][d]` = ∂x_i/∂ξ_d.
     pub jacobian: [[f64; 2]; 2],

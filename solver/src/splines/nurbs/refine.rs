@@ -121,7 +121,7 @@ fn bezier_points(degree: usize, knots: &[f64], points: &[[f64; 3]], index: usize
     bezier
 }
 
-/// `(1 − s) a + s b`.
+/// Point `(1 − s) a + s b` of the line through two points in homogeneous coordinates.
 fn blend(a: [f64; 3], b: [f64; 3], s: f64) -> [f64; 3] {
     [0, 1, 2].map(|c| (1.0 - s) * a[c] + s * b[c])
 }

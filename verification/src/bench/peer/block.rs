@@ -45,9 +45,9 @@ const COLUMNS: [&str; 5] = ["x", "y", "volume", "vx", "vy"];
 /// The block, before and after our steps.
 pub struct PeerBlock {
     scene: Scene,
-    /// At t = 0.
+    /// The block at t = 0, before any step.
     pub start: UpdatedFrame,
-    /// Time step, s.
+    /// Time step of all runs of the block, s.
     pub step: f64,
     /// Numbers of steps of the shorter and the longer run.
     pub steps: [usize; 2],
@@ -92,7 +92,7 @@ impl PeerBlock {
         Ok(block)
     }
 
-    /// Number of points.
+    /// Number of material points.
     pub fn points(&self) -> usize {
         self.before.len()
     }

@@ -12,7 +12,7 @@ use super::super::timing::Stopwatch;
 
 /// A command of the user.
 pub struct Program {
-    /// As it was given.
+    /// Command line as one string, for labels and messages.
     pub command: String,
     words: Vec<String>,
     limit: Duration,

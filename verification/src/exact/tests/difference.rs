@@ -23,7 +23,7 @@ pub fn partial(f: impl Fn([f64; 2]) -> f64, at: [f64; 2], d: usize) -> f64 {
     first(|h| f(shifted(at, d, h)))
 }
 
-/// Laplacian of `f`.
+/// Laplacian of `f` at the point `at`.
 pub fn laplacian(f: impl Fn([f64; 2]) -> f64, at: [f64; 2]) -> f64 {
     [0, 1].iter().map(|&d| second(|h| f(shifted(at, d, h)))).sum()
 }

@@ -97,7 +97,7 @@ fn mean_of_ellipse(half: f64) -> f64 {
 /// Bodies in contact as Hertz sees them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Hertz {
-    /// R, m, and E*, Pa.
+    /// Effective radius R, m, and effective modulus E*, Pa, of the two bodies.
     radius: f64,
     modulus: f64,
     /// Shortest span, m, and length of a boundary segment, m.
@@ -219,7 +219,7 @@ fn spread(bins: &mut [f64; BINS], [from, to]: [f64; 2], amount: f64) {
 
 /// What is seen at a step.
 struct Moment {
-    /// Mean, N/m.
+    /// Running mean of the force of contact, N/m.
     force: f64,
     /// Mean square of the place across the contact times the present force over the mean, m².
     square: f64,
@@ -229,7 +229,7 @@ struct Moment {
     stress: f64,
 }
 
-/// What a run gave.
+/// Forces, pressures and balances that were measured during a run.
 struct Pressed {
     hertz: Hertz,
     /// Means of the force in every step with contact, N/m.

@@ -53,7 +53,7 @@ const MESHES: usize = 3;
 /// Columns of the forces.
 const COLUMNS: [&str; 2] = ["time_c_over_l1", "force_over_plateau"];
 const NORMS: [&str; 2] = ["error of the exit velocities", "energy lost in contact"];
-/// Orders of theory.
+/// Orders of theory, one for each of `NORMS`.
 const ORDERS: [Option<f64>; 2] = [Some(2.0 / 3.0), Some(1.0)];
 
 /// Runs that differ in the mesh only.
@@ -87,15 +87,15 @@ fn rectangle() -> Table {
     Table::of_rows(&COLUMNS, rows)
 }
 
-/// Two bars along x.
+/// Two bars along x before their impact, and the closed form of its force.
 struct Bars {
-    /// Lengths, m.
+    /// Lengths of the first and the second bar along x, m.
     lengths: [f64; 2],
-    /// Gap at t = 0, m.
+    /// Distance between the bars along x at t = 0, m.
     gap: f64,
     /// Closing velocity, m/s.
     speed: f64,
-    /// Wave speed, m/s.
+    /// Speed of dilatational waves in the bars, m/s.
     wave: f64,
     /// Force of the plateau per unit thickness, N/m.
     plateau: f64,

@@ -42,7 +42,7 @@ impl<'a> Meshes<'a> {
         (0..self.setup.degrees.len()).flat_map(of_degree).collect()
     }
 
-    /// Degree of a curve.
+    /// Degree of the splines of a curve.
     pub(crate) fn degree(&self, curve: CurveKey) -> usize {
         self.setup.degrees[curve.n]
     }

@@ -27,7 +27,7 @@ pub(super) const ROWS: usize = STRIP_ROWS / 2;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Regions {
     pub refined: Vec<Vec<bool>>,
-    /// Tiles in a strip.
+    /// Number of tiles in a strip, for each level but the finest.
     columns: Vec<usize>,
 }
 
