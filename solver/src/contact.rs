@@ -52,7 +52,7 @@ use crate::splines::patch::Patch;
 pub use constraint::{BodyView, ContactConstraint};
 use constraint::{BoundaryFunctions, Impulse};
 use encounter::{Encounter, Sight, Squares};
-use motion::{AHEAD, MOST, NotFollowed, TooDeep, TooFast};
+use motion::{AHEAD, MOST, NotFollowed};
 pub(crate) use rigid::RigidBody;
 use surface::Center;
 pub use surface::Surface;
@@ -185,7 +185,7 @@ impl ContactSolver {
                 let cosine = dot(normal, nearest.normal);
                 let (depth, follows) = (-nearest.distance / self.reach, if cosine > BEHIND { FLUSH } else { MOST });
                 if self.soft && depth > follows {
-                    return Err(TooDeep { place: position, spans: depth, follows }.into());
+                    return Err(NotFollowed::TooDeep { place: position, spans: depth, follows });
                 }
                 let is_cutting = cosine > FACING;
                 if is_cutting && (cosine > fault!("flanks-not-met", CUTTING => FACING) || nearest.distance >= 0.0) {
@@ -208,7 +208,7 @@ impl ContactSolver {
                     continue;
                 }
                 if closing > MOST * self.reach {
-                    return Err(TooFast { place: position, spans: closing / self.reach }.into());
+                    return Err(NotFollowed::TooFast { place: position, spans: closing / self.reach });
                 }
                 let middle = [0, 1].map(|d| position[d] + 0.5 * sign * nearest.distance * normal[d]);
                 let square = self.squares.of(middle);

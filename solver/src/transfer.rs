@@ -5,7 +5,7 @@
 //! Symbols: N_a(x_p) and its gradient, sigma Kirchhoff's or Cauchy's stress (Pa), f nodal forces (N/m).
 //! Calls [`particles`](crate::particles), [`material`](crate::material) and [`splines`](crate::splines).
 
-pub(crate) mod finite;
+pub mod finite;
 pub mod kernels;
 pub mod point_kernel;
 pub mod sweep;

@@ -32,6 +32,8 @@ use stability::{
     boundary_points, critical_step, growth, incompressible, repeatability, split_families, units, unloading,
 };
 
+use fisura::Simulation;
+use fisura::dynamics::energy::Sample;
 use fisura::dynamics::projection::Projection;
 use fisura::dynamics::total_frame::TotalFrame;
 use fisura::particles::lattice::Lattice;
@@ -251,4 +253,14 @@ pub static STUDIES: [Study; 28] = [
 /// The study of that name.
 pub fn find(name: &str) -> Option<&'static Study> {
     STUDIES.iter().find(|study| study.name == name)
+}
+
+/// The samples of a run from its start to its end.
+fn samples(simulation: &mut Simulation) -> Result<Vec<Sample>, StudyError> {
+    let mut samples = vec![simulation.sample()];
+    while !simulation.finished() {
+        crate::watch::check()?;
+        samples.push(simulation.advance_to_next_sample()?);
+    }
+    Ok(samples)
 }

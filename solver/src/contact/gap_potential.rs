@@ -35,7 +35,7 @@ mod winding;
 
 use super::ContactLedger;
 use super::impulse::ContactForce;
-use super::motion::TooDeep;
+use super::motion::NotFollowed;
 use super::rigid::{RigidOutline, RigidPose};
 use crate::checkpoint::{Archive, StateError};
 use crate::linear_algebra::extremes::{around, larger, smaller};
@@ -128,7 +128,7 @@ impl GapPotential {
     ///
     /// # Errors
     /// If a boundary is deeper in another body than contact follows.
-    pub(crate) fn find(&mut self, mut outlines: Vec<Outline>, time: f64, dt: f64) -> Result<(), TooDeep> {
+    pub(crate) fn find(&mut self, mut outlines: Vec<Outline>, time: f64, dt: f64) -> Result<(), NotFollowed> {
         let (deformable, alone) = (outlines.len(), self.own.len());
         let (rigid, poses): (Vec<_>, Vec<_>) = self.rigid.iter().map(|body| body.at(time)).unzip();
         outlines.extend(rigid);
@@ -159,7 +159,7 @@ impl GapPotential {
     }
 
     /// What the boundary of a in a box feels of b.
-    fn compare(&mut self, [a, b]: [usize; 2], outlines: &[Outline], common: [[f64; 2]; 2]) -> Result<(), TooDeep> {
+    fn compare(&mut self, [a, b]: [usize; 2], outlines: &[Outline], common: [[f64; 2]; 2]) -> Result<(), NotFollowed> {
         let own = self.own.get(a).filter(|_| a == b);
         let spring = smaller(outlines[a].spring, outlines[b].spring);
         let corners = if outlines[a].spring.is_infinite() { outlines[b].corners() } else { Vec::new() };
@@ -178,7 +178,7 @@ impl GapPotential {
                 }
                 if depth > followed {
                     let [spans, follows] = [depth, followed].map(|depth| depth / self.reach);
-                    return Err(TooDeep { place: place.position, spans, follows });
+                    return Err(NotFollowed::TooDeep { place: place.position, spans, follows });
                 }
                 let pressure = 0.5 * spring * depth * place.length;
                 self.energy += 0.5 * pressure * depth;

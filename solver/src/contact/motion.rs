@@ -21,37 +21,29 @@ const SEGMENTS: f64 = 256.0;
 /// Relative round-off of places and speeds at the start.
 const ROUND_OFF: f64 = 1e-9;
 
-/// Bodies that are about to meet approach each other too far in a step.
-#[derive(Debug, Clone, Copy, PartialEq, Error)]
-#[error("bodies that are about to meet approach each other by {spans:.3} spans in a step, and contact follows {MOST}")]
-pub struct TooFast {
-    /// Middle of a boundary segment that approaches another body, m.
-    pub place: [f64; 2],
-    /// By how much they approach in a step, in spans.
-    pub spans: f64,
-}
-
-/// A boundary that is deeper in another body than contact follows.
-#[derive(Debug, Clone, Copy, PartialEq, Error)]
-#[error("a boundary is {spans:.3} spans deep in another body, and contact follows {follows:.3} there")]
-pub struct TooDeep {
-    /// Place on the boundary that lies in the other body, m.
-    pub place: [f64; 2],
-    /// Depth of that place in the other body, in lengths of the shortest span.
-    pub spans: f64,
-    /// Depth that contact follows there, in spans.
-    pub follows: f64,
-}
-
 /// Boundaries whose contact cannot be followed.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum NotFollowed {
-    /// They approach each other too far in a step.
-    #[error(transparent)]
-    TooFast(#[from] TooFast),
-    /// They are too deep in each other.
-    #[error(transparent)]
-    TooDeep(#[from] TooDeep),
+    /// Bodies that are about to meet approach each other too far in a step.
+    #[error(
+        "bodies that are about to meet approach each other by {spans:.3} spans in a step, and contact follows {MOST}"
+    )]
+    TooFast {
+        /// Middle of a boundary segment that approaches another body, m.
+        place: [f64; 2],
+        /// By how much they approach in a step, in spans.
+        spans: f64,
+    },
+    /// A boundary that is deeper in another body than contact follows.
+    #[error("a boundary is {spans:.3} spans deep in another body, and contact follows {follows:.3} there")]
+    TooDeep {
+        /// Place on the boundary that lies in the other body, m.
+        place: [f64; 2],
+        /// Depth of that place in the other body, in lengths of the shortest span.
+        spans: f64,
+        /// Depth that contact follows there, in spans.
+        follows: f64,
+    },
 }
 
 /// A body as it begins to move.

@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use super::loads::LostTraction;
 use crate::contact::impulse::Unconverged;
-use crate::contact::motion::{NotFollowed, TooDeep, TooFast};
+use crate::contact::motion::NotFollowed;
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::particles::points::OutsidePatch;
 
@@ -69,12 +69,9 @@ pub enum Failure {
     /// Impulses of contact did not converge.
     #[error(transparent)]
     Unconverged(#[from] Unconverged),
-    /// Bodies meet that approach each other too far in a step.
+    /// Contact cannot be followed.
     #[error(transparent)]
-    TooFast(#[from] TooFast),
-    /// A boundary is too deep in another body.
-    #[error(transparent)]
-    TooDeep(#[from] TooDeep),
+    NotFollowed(#[from] NotFollowed),
     /// There is no material at a place (m) of the boundary of the body of that number.
     #[error("there is no material point within a cell of ({:.6e}, {:.6e}) m on the boundary of the body", place[0], place[1])]
     BareBoundary {
@@ -113,19 +110,9 @@ impl Failure {
             | Self::BareBoundary { place, .. }
             | Self::LostCondition { place, .. }
             | Self::Unconverged(Unconverged { place, .. })
-            | Self::TooFast(TooFast { place, .. })
-            | Self::TooDeep(TooDeep { place, .. }) => Some(place),
+            | Self::NotFollowed(NotFollowed::TooFast { place, .. } | NotFollowed::TooDeep { place, .. }) => Some(place),
             Self::LostTraction { lost, .. } => Some(lost.place()),
             _ => None,
-        }
-    }
-}
-
-impl From<NotFollowed> for Failure {
-    fn from(lost: NotFollowed) -> Self {
-        match lost {
-            NotFollowed::TooFast(lost) => lost.into(),
-            NotFollowed::TooDeep(lost) => lost.into(),
         }
     }
 }

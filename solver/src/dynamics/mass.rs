@@ -59,9 +59,7 @@ impl MassMatrix {
     pub fn new(lattice: &Lattice, density: f64, mass: scene::Mass, held: [Vec<usize>; 2]) -> Result<Self, Failure> {
         let mut row_sums = lattice.integrate(|_, _, _| 1.0);
         row_sums.iter_mut().for_each(|m| *m *= density);
-        if let Some(sheets) = lattice.sheets() {
-            sheets.fold(&mut row_sums);
-        }
+        lattice.sheets.fold(&mut row_sums);
         let negligible = NEGLIGIBLE * row_sums.iter().copied().fold(0.0, larger);
         let kind = match fault!("mass-lumped", mass => scene::Mass::Lumped) {
             scene::Mass::Lumped => {

@@ -21,7 +21,7 @@ impl<'a> Projection<'a> {
     /// see no point. `None` if the points do not determine a field, as with fewer than p + 1 of them in some
     /// span, or where control points have copies.
     pub fn new(lattice: &'a Lattice, held: &[usize]) -> Option<Self> {
-        if lattice.sheets().is_some() {
+        if !lattice.sheets.is_empty() {
             return None;
         }
         let mut matrix = Stencil::zeros(lattice.grid, lattice.degree);

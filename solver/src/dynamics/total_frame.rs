@@ -34,7 +34,7 @@ use crate::scene::{Kinematics, Shape};
 use crate::splines::patch::Patch;
 use crate::transfer::sweep::StripForces;
 
-use crate::transfer::finite::elastic_forces;
+use crate::transfer::finite::{Elastic, elastic_forces};
 use boundary::MaterialBoundary;
 use domain::{Domain, ProbePlace};
 use edge_conditions::EdgeConditions;
@@ -150,7 +150,8 @@ impl TotalFrame {
     fn update_history(&mut self) {
         let Self { lattice, moduli, kinematics, displacement, strip_forces, fracture, time, .. } = self;
         if let Some(fracture) = fracture {
-            fracture.update_history(lattice, *time, *moduli, *kinematics, displacement, strip_forces);
+            let body = Elastic { lattice, moduli: *moduli, kinematics: *kinematics };
+            fracture.update_history(body, *time, displacement, strip_forces);
         }
     }
 
@@ -177,7 +178,7 @@ impl TotalFrame {
                 }
             });
         }
-        self.lattice.spread(&mut self.displacement);
+        self.lattice.sheets.spread(&mut self.displacement);
         self.time += dt;
     }
 
@@ -189,7 +190,7 @@ impl TotalFrame {
                 v.iter_mut().zip(&a[used]).for_each(|(v, a)| *v += part * a);
             });
         }
-        self.lattice.spread(&mut self.velocity);
+        self.lattice.sheets.spread(&mut self.velocity);
     }
 
     /// Loads that follow the body or vary in space, at the present time.
@@ -209,15 +210,15 @@ impl TotalFrame {
 
     /// Stress at the points and its nodal forces; books the work of the history field.
     fn internal_forces(&mut self) {
-        let Self { lattice, moduli, kinematics, displacement, strip_forces, internal, .. } = self;
+        let Self { lattice, displacement, strip_forces, internal, .. } = self;
+        let body = Elastic { lattice, moduli: self.moduli, kinematics: self.kinematics };
         if let Some(fracture) = &mut self.fracture {
-            let displacement = [&displacement[0][..], &displacement[1][..]];
-            let sums = fracture.degraded_forces(lattice, *moduli, *kinematics, displacement, strip_forces);
+            let sums = fracture.degraded_forces(body, displacement, strip_forces);
             self.elastic_energy = sums.elastic_energy;
             self.ledger.history_work += sums.history_work;
             strip_forces.assemble(self.grid.stride, internal);
         } else {
-            self.elastic_energy = elastic_forces(lattice, *moduli, *kinematics, displacement, strip_forces, internal);
+            self.elastic_energy = elastic_forces(body, displacement, strip_forces, internal);
         }
         lattice.fold(internal);
     }

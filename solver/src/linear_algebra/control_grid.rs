@@ -4,8 +4,9 @@
 //! stays zero.
 
 use super::lane::LANES;
-use crate::splines::spline::MAX_DEGREE;
 
+/// Highest degree of splines: control points that a function reaches to either side.
+pub const MAX_DEGREE: usize = 4;
 /// Rows of control points whose partial sums are formed together.
 pub(crate) const CHUNK_ROWS: usize = 8;
 /// Room before the first control point of a row.

@@ -3,8 +3,8 @@
 //! A few couplings at a time go along the whole row: memory delivers a few long streams faster than many that
 //! take turns, and the sums stay in the nearest cache.
 
+use super::control_grid::MAX_DEGREE;
 use super::lane::{LANES, Lane, Scalar, each};
-use crate::splines::spline::MAX_DEGREE;
 
 /// Most couplings of a control point: those of two splines of the highest degree.
 const MOST: usize = (2 * MAX_DEGREE + 1) * (2 * MAX_DEGREE + 1);

@@ -66,7 +66,7 @@ pub struct Lattice {
     factor: Option<Vec<Lane>>,
     /// Whether a strip has points in a tile, strip by strip; absent if every one does.
     occupied: Option<Vec<bool>>,
-    sheets: Option<Box<Sheets>>,
+    pub(crate) sheets: Sheets,
     /// Points of the spans that the boundary cuts.
     cut: Vec<CutBatch>,
 }
@@ -133,23 +133,9 @@ fn directions<'a>(body: &Body, spaces: &'a [SplineSpace; 2], mapped: bool) -> [A
 }
 
 impl Lattice {
-    /// Copies of control points along slits.
-    pub(crate) fn sheets(&self) -> Option<&Sheets> {
-        self.sheets.as_deref()
-    }
-
-    /// Gives copies of control points the values of their originals.
-    pub(crate) fn spread(&self, field: &mut VectorField) {
-        if let Some(sheets) = &self.sheets {
-            sheets.spread(field);
-        }
-    }
-
     /// Moves forces at copies of control points to their originals.
     pub(crate) fn fold(&self, forces: &mut VectorField) {
-        if let Some(sheets) = &self.sheets {
-            forces.iter_mut().for_each(|component| sheets.fold(component));
-        }
+        forces.iter_mut().for_each(|component| self.sheets.fold(component));
     }
 
     /// Whether a strip has points in a tile.
@@ -193,17 +179,12 @@ impl Lattice {
 
     /// A field on all control points as one on those of the patch, to which copies add.
     pub(crate) fn onto_patch(&self, field: Vec<f64>) -> Vec<f64> {
-        match &self.sheets {
-            None => field,
-            Some(sheets) => sheets.onto_patch(self.patch_grid, field),
-        }
+        self.sheets.onto_patch(self.patch_grid, field)
     }
 
     /// A field on the control points of the patch with its copies.
     pub(crate) fn with_copies(&self, mut field: Vec<f64>) -> Vec<f64> {
-        if let Some(sheets) = &self.sheets {
-            sheets.extend(self.patch_grid, &mut field);
-        }
+        self.sheets.extend(self.patch_grid, &mut field);
         field
     }
 
@@ -215,7 +196,7 @@ impl Lattice {
     /// Whether the span whose first function has the control point `first` has material on the side of the
     /// slits of a position, m.
     pub(crate) fn has_side(&self, first: usize, position: [f64; 2]) -> bool {
-        self.sheets.as_ref().is_none_or(|sheets| sheets.has_side(self.cell(first), position))
+        self.sheets.has_side(self.cell(first), position)
     }
 
     /// Column and row of a control point of the patch.
@@ -226,14 +207,13 @@ impl Lattice {
     /// The control point that stands for one of the patch at a position (m), in the span whose first function
     /// has the control point `first`.
     pub(crate) fn control_point(&self, at: usize, first: usize, position: [f64; 2]) -> usize {
-        self.sheets.as_ref().map_or(at, |sheets| sheets.original(at + self.lift(first, position)))
+        self.sheets.original(at + self.lift(first, position))
     }
 
     /// Distance in fields of the control points of a position (m) from those of the patch, in the span whose
     /// first function has the control point `first`.
     pub(crate) fn lift(&self, first: usize, position: [f64; 2]) -> usize {
-        let Some(sheets) = &self.sheets else { return 0 };
-        sheets.lift(self.cell(first), position) * self.grid.stride
+        self.sheets.lift(self.cell(first), position) * self.grid.stride
     }
 
     /// Number of points in a whole span: points in x times points in y.

@@ -4,17 +4,17 @@
 use std::collections::BTreeSet;
 
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
+use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::extremes::{larger, smaller};
 use crate::linear_algebra::lane::{LANES, Lane};
 use crate::material::degradation::{BROKEN, FractureModel};
-use crate::material::elasticity::ElasticModuli;
 use crate::particles::lattice::Lattice;
 use crate::phase_field::PhaseField;
 use crate::phase_field::lag::LagWork;
 use crate::phase_field::toughness::relative_toughness;
-use crate::scene::{Body, Crack, CrackKind, Fracture, Kinematics, SolverSettings};
+use crate::scene::{Body, Crack, CrackKind, Fracture, SolverSettings};
 use crate::splines::patch::Patch;
-use crate::transfer::finite::{elastic_sweep, sweep_with};
+use crate::transfer::finite::{Elastic, elastic_sweep, sweep_with};
 use crate::transfer::kernels::{DegradedStress, HistoryUpdate, ScreenedStress, SurfaceEnergy};
 use crate::transfer::point_kernel::Fields;
 use crate::transfer::sweep::{StripForces, sweep};
@@ -104,16 +104,8 @@ impl LatticeFracture {
 
     /// H from the present displacement, or from cracks that are driven, at a time, s; with a threshold also
     /// the forces of the intact body, to which those of the damage will be added.
-    pub fn update_history(
-        &mut self,
-        lattice: &Lattice,
-        time: f64,
-        moduli: ElasticModuli,
-        kinematics: Kinematics,
-        displacement: &[Vec<f64>; 2],
-        forces: &mut StripForces,
-    ) {
-        let model = self.model;
+    pub fn update_history(&mut self, body: Elastic, time: f64, u: &VectorField, forces: &mut StripForces) {
+        let (model, Elastic { lattice, moduli, .. }) = (self.model, body);
         if !self.driven.is_empty() {
             let grown: Vec<Crack> = self.driven.iter().filter_map(|crack| crack.grown(time)).collect();
             let Self { history, relative, .. } = self;
@@ -124,7 +116,7 @@ impl LatticeFracture {
             });
             return;
         }
-        let fields = Fields { displacement: [&displacement[0], &displacement[1]], phase: &[] };
+        let fields = Fields { displacement: [&u[0], &u[1]], phase: &[] };
         let (chunk, span) = (lattice.strip_batches(), lattice.points_per_span());
         let cells_of_strip = chunk / span;
         if let Some((awake, phase)) = self.field.awake_mut() {
@@ -134,7 +126,7 @@ impl LatticeFracture {
             let kernel =
                 |reached| ScreenedStress { moduli, level, span, reached, most: Lane::ZERO, energy: Lane::ZERO };
             let mut kernels: Vec<_> = strips.map(kernel).collect();
-            sweep_with(kinematics, lattice, fields, &mut kernels, Some(forces));
+            sweep_with(body, fields, &mut kernels, Some(forces));
             self.intact_energy = Some(kernels.iter().map(|k| k.energy.sum()).sum());
             let before = awake.computed.clone();
             awake.choose(lattice, &reached, phase);
@@ -146,7 +138,7 @@ impl LatticeFracture {
         let strips = self.history.chunks_mut(chunk);
         let kernel = |history| HistoryUpdate { cells: cells.next().unwrap_or_default(), moduli, model, history };
         let mut kernels: Vec<_> = strips.map(kernel).collect();
-        sweep_with(kinematics, lattice, fields, &mut kernels, None);
+        sweep_with(body, fields, &mut kernels, None);
     }
 
     /// Begins the work between solves with zero.
@@ -175,20 +167,13 @@ impl LatticeFracture {
 
     /// Degraded stress at the points and its nodal forces; keeps c and `s (H − psi+)` for the history work of
     /// the next step.
-    pub fn degraded_forces(
-        &mut self,
-        lattice: &Lattice,
-        moduli: ElasticModuli,
-        kinematics: Kinematics,
-        displacement: [&[f64]; 2],
-        forces: &mut StripForces,
-    ) -> StressSums {
-        let model = self.model;
-        let fields = Fields { displacement, phase: self.field.control_values() };
+    pub fn degraded_forces(&mut self, body: Elastic, u: &VectorField, forces: &mut StripForces) -> StressSums {
+        let (model, Elastic { lattice, moduli, .. }) = (self.model, body);
+        let fields = Fields { displacement: [&u[0], &u[1]], phase: self.field.control_values() };
         let chunk = lattice.strip_batches();
         let awake = self.field.awake();
         let swept = self.intact_energy.take();
-        let sweep = || elastic_sweep(lattice, moduli, kinematics, fields, forces);
+        let sweep = || elastic_sweep(body, fields, forces);
         let intact = awake.map_or(0.0, |_| swept.unwrap_or_else(sweep));
         // excess is work where c changes: it has to be known before c does
         let knows_excess = model.driving_work().is_some();
@@ -213,7 +198,7 @@ impl LatticeFracture {
                 drive_work: Lane::ZERO,
             })
             .collect();
-        sweep_with(kinematics, lattice, fields, &mut kernels, Some(forces));
+        sweep_with(body, fields, &mut kernels, Some(forces));
         let drive_work: f64 = kernels.iter().map(|k| k.drive_work.sum()).sum();
         let history_work: f64 = kernels.iter().map(|k| k.history_work.sum()).sum();
         let elastic_energy = intact + kernels.iter().map(|k| k.energy.sum()).sum::<f64>();

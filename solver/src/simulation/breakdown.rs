@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use crate::contact::motion::NotFollowed;
 use crate::dynamics::failure::Failure;
 use crate::dynamics::loads::LostTraction;
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
@@ -77,11 +78,11 @@ pub(super) fn cause(failure: Failure, tolerance: f64) -> &'static str {
             "bodies wedged between others, or friction too large for one solution; lower contact.friction or \
              analysis.safety, or use larger cells where they meet"
         }
-        Failure::TooFast(_) => {
+        Failure::NotFollowed(NotFollowed::TooFast { .. }) => {
             "bodies faster than contact can follow at this time step: give analysis.time_step as much less, or lower \
              analysis.safety"
         }
-        Failure::TooDeep(_) => {
+        Failure::NotFollowed(NotFollowed::TooDeep { .. }) => {
             "contact too soft for what presses, or bodies faster than waves; raise contact.stiffness, or use smaller cells"
         }
         Failure::BareBoundary { .. } | Failure::NoPoints(_) => {

@@ -5,7 +5,7 @@ use super::breakdown::{cause, numbers};
 use super::frame::{Bodies, either};
 use crate::contact::ContactSolver;
 use crate::contact::impulse::Unconverged;
-use crate::contact::motion::{TooDeep, TooFast};
+use crate::contact::motion::NotFollowed;
 use crate::dynamics::energy::Sample;
 use crate::dynamics::failure::Failure;
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
@@ -309,8 +309,9 @@ impl Simulation {
             }
             Failure::Left(place)
             | Failure::Unconverged(Unconverged { place, .. })
-            | Failure::TooFast(TooFast { place, .. })
-            | Failure::TooDeep(TooDeep { place, .. }) => self.at(place, what, Some(cause)),
+            | Failure::NotFollowed(NotFollowed::TooFast { place, .. } | NotFollowed::TooDeep { place, .. }) => {
+                self.at(place, what, Some(cause))
+            }
             _ => self.at_worst_point(&what, Some(cause)),
         }
     }

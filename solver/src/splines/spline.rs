@@ -6,8 +6,8 @@
 
 use std::ops::Range;
 
-/// Highest polynomial degree.
-pub(crate) const MAX_DEGREE: usize = 4;
+pub(crate) use crate::linear_algebra::control_grid::MAX_DEGREE;
+
 /// Positions beyond an end of a patch by up to this fraction of its length are on it: an end at `0.1 + 0.7`
 /// lies short of 0.8.
 pub const ROUND_OFF: f64 = 1e-9;

@@ -66,48 +66,46 @@ impl<K: PointKernel> PointKernel for OnHenckyStrain<'_, K> {
     }
 }
 
+/// What the elastic stress of a body follows from, beside the displacement.
+#[derive(Debug, Clone, Copy)]
+pub struct Elastic<'a> {
+    /// Material points of the body.
+    pub lattice: &'a Lattice,
+    /// Elastic moduli of the intact body, Pa.
+    pub moduli: ElasticModuli,
+    /// Strain measure.
+    pub kinematics: Kinematics,
+}
+
 /// [`sweep`] with the strain measure of a scene.
 pub(crate) fn sweep_with<K: PointKernel>(
-    kinematics: Kinematics,
-    lattice: &Lattice,
+    body: Elastic,
     fields: Fields,
     kernels: &mut [K],
     forces: Option<&mut StripForces>,
 ) {
-    match kinematics {
-        Kinematics::Small => sweep(lattice, fields, kernels, forces),
+    match body.kinematics {
+        Kinematics::Small => sweep(body.lattice, fields, kernels, forces),
         Kinematics::Finite => {
             let mut kernels: Vec<_> = kernels.iter_mut().map(OnHenckyStrain).collect();
-            sweep(lattice, fields, &mut kernels, forces);
+            sweep(body.lattice, fields, &mut kernels, forces);
         }
     }
 }
 
 /// Nodal forces (N/m) of the elastic stress under a displacement (m); returns the elastic energy, J/m.
-pub(crate) fn elastic_forces(
-    lattice: &Lattice,
-    moduli: ElasticModuli,
-    kinematics: Kinematics,
-    displacement: &VectorField,
-    strips: &mut StripForces,
-    out: &mut VectorField,
-) -> f64 {
-    let fields = Fields { displacement: [&displacement[0], &displacement[1]], phase: &[] };
-    let energy = elastic_sweep(lattice, moduli, kinematics, fields, strips);
-    strips.assemble(lattice.grid.stride, out);
+pub(crate) fn elastic_forces(body: Elastic, u: &VectorField, strips: &mut StripForces, out: &mut VectorField) -> f64 {
+    let fields = Fields { displacement: [&u[0], &u[1]], phase: &[] };
+    let energy = elastic_sweep(body, fields, strips);
+    strips.assemble(body.lattice.grid.stride, out);
     energy
 }
 
 /// Forces (N/m) of the elastic stress, strip by strip; returns the elastic energy, J/m.
-pub(crate) fn elastic_sweep(
-    lattice: &Lattice,
-    moduli: ElasticModuli,
-    kinematics: Kinematics,
-    fields: Fields,
-    strips: &mut StripForces,
-) -> f64 {
+pub(crate) fn elastic_sweep(body: Elastic, fields: Fields, strips: &mut StripForces) -> f64 {
+    let Elastic { lattice, moduli, .. } = body;
     let mut kernels: Vec<_> = (0..lattice.strips()).map(|_| ElasticStress { moduli, energy: Lane::ZERO }).collect();
-    sweep_with(kinematics, lattice, fields, &mut kernels, Some(strips));
+    sweep_with(body, fields, &mut kernels, Some(strips));
     kernels.iter().map(|k| k.energy.sum()).sum()
 }
 

@@ -2,15 +2,12 @@
 
 use fisura::Simulation;
 use fisura::dynamics::updated_frame::UpdatedFrame;
-use fisura::dynamics::updated_frame::grid::NodalFields;
+use fisura::dynamics::updated_frame::field::DiscreteField;
 use fisura::dynamics::updated_frame::strain::SmallStrain;
 use fisura::dynamics::updated_frame::transfer::{GridToPoints, PointsToGrid, StripMotion};
 use fisura::dynamics::updated_frame::windows::{cut, scatter, side_by_side};
 use fisura::linear_algebra::lane::dispatch;
-use fisura::material::elasticity::ElasticModuli;
-use fisura::particles::points::{Cells, Point};
 use fisura::scene::Scene;
-use fisura::splines::patch::Patch;
 use rayon::prelude::*;
 
 use super::block::{DENSITY, moving_scene};
@@ -18,13 +15,7 @@ use super::{BenchError, minimal::Minimal};
 use crate::extremes::{larger, largest};
 
 /// An elastic block in the updated frame after a few steps.
-pub struct MovingBlock {
-    patch: Patch,
-    points: Vec<Point>,
-    cells: Cells,
-    nodes: NodalFields,
-    moduli: ElasticModuli,
-}
+pub struct MovingBlock(DiscreteField);
 
 /// A velocity that strains: m/s at a position in m.
 fn velocity([x, y]: [f64; 2]) -> [f64; 2] {
@@ -37,29 +28,23 @@ impl MovingBlock {
     /// # Errors
     /// If a step cannot be taken.
     pub fn new(degree: usize, points: usize, cells: usize, steps: usize) -> Result<Self, BenchError> {
-        let (frame, _) = moved(&moving_scene(degree, points, cells, degree), steps)?;
-        let field = &frame.fields[0];
-        Ok(Self {
-            patch: field.patch.clone(),
-            points: field.points.to_vec(),
-            cells: field.cells.clone(),
-            nodes: field.nodes.clone(),
-            moduli: field.moduli,
-        })
+        let (mut frame, _) = moved(&moving_scene(degree, points, cells, degree), steps)?;
+        Ok(Self(frame.fields.swap_remove(0)))
     }
 
     /// Number of material points.
     pub fn count(&self) -> usize {
-        self.points.len()
+        self.0.points.len()
     }
 
     /// Means of the shape functions over the domains of all points; their sum, which is the number of points.
     pub fn basis(&self) -> f64 {
-        let order = self.patch.spaces.each_ref().map(|space| space.degree() + 1);
+        let DiscreteField { patch, points, cells, .. } = &self.0;
+        let order = patch.spaces.each_ref().map(|space| space.degree() + 1);
         let mut sum = 0.0;
-        for cell in &self.cells.cells {
-            for point in &self.points[cell.points.clone()] {
-                let [sx, sy] = point.mean_functions::<false>(&self.patch, cell, order);
+        for cell in &cells.cells {
+            for point in &points[cell.points.clone()] {
+                let [sx, sy] = point.mean_functions::<false>(patch, cell, order);
                 sum += sx.value.iter().sum::<f64>() * sy.value.iter().sum::<f64>();
             }
         }
@@ -68,7 +53,7 @@ impl MovingBlock {
 
     /// Mass, momentum and forces of the points on the grid.
     pub fn points_to_grid(&mut self) {
-        let Self { patch, points, cells, nodes, .. } = self;
+        let DiscreteField { patch, points, cells, nodes, .. } = &mut self.0;
         let (patch, points, cells) = (&*patch, &points[..], &*cells);
         let grid = nodes.grid;
         nodes.sums.fill([0.0; 5]);
@@ -81,16 +66,16 @@ impl MovingBlock {
     /// Velocities and accelerations of the control points, and a kick of `dt` seconds. What
     /// [`Self::points_to_grid`] left is used up.
     pub fn grid(&mut self, dt: f64) {
-        self.nodes.divide_by_mass();
-        self.nodes.stop();
-        self.nodes.accelerate();
-        self.nodes.kick(dt);
+        self.0.nodes.divide_by_mass();
+        self.0.nodes.stop();
+        self.0.nodes.accelerate();
+        self.0.nodes.kick(dt);
     }
 
     /// Velocity, position, strain and stress of the points after a step of `dt` seconds; zero leaves them
     /// where they are.
     pub fn grid_to_points(&mut self, dt: f64) -> StripMotion {
-        let Self { patch, points, cells, nodes, moduli } = self;
+        let DiscreteField { patch, points, cells, nodes, moduli, .. } = &mut self.0;
         let patch = &*patch;
         let ([ux, uy], [ax, ay], mut fields) = (&nodes.velocity, &nodes.acceleration, Vec::new());
         side_by_side([ux, uy, ax, ay], &mut fields);
@@ -123,18 +108,12 @@ impl MovingBlock {
     /// Largest difference of the accelerations, recomputed phase by phase, from those of the solver's own
     /// step, over the largest of these.
     pub fn deviation(&self) -> f64 {
-        let mut again = Self {
-            patch: self.patch.clone(),
-            points: self.points.clone(),
-            cells: self.cells.clone(),
-            nodes: self.nodes.clone(),
-            moduli: self.moduli,
-        };
+        let mut again = Self(self.0.clone());
         again.points_to_grid();
         again.grid(0.0);
-        let pairs = |d: usize| again.nodes.acceleration[d].iter().zip(&self.nodes.acceleration[d]);
+        let pairs = |d: usize| again.0.nodes.acceleration[d].iter().zip(&self.0.nodes.acceleration[d]);
         let difference = |d: usize| largest(pairs(d).map(|(a, b)| (a - b).abs()));
-        let size = largest(self.nodes.acceleration.iter().flatten().map(|a| a.abs()));
+        let size = largest(self.0.nodes.acceleration.iter().flatten().map(|a| a.abs()));
         larger(difference(0), difference(1)) / size
     }
 }

@@ -18,31 +18,14 @@ const OFF_AXIS: f64 = 0.25e-3;
 /// Half width of the window in which a speed is fitted, s.
 const SPEED_WINDOW: f64 = 2e-6;
 
-/// What an event is called, and where its figures stand.
-struct Event {
-    words: &'static str,
-    value: &'static str,
-    study: &'static str,
-    unit: &'static str,
-}
-
-const EVENTS: [Event; 6] = [
-    Event { words: "onset: tip passes 50.5 mm", value: "onset-time", study: "onset_time_s", unit: "s" },
-    Event { words: "branching", value: "branching-time", study: "branching_time_s", unit: "s" },
-    Event { words: "place of branching", value: "branching-x", study: "branching_x_m", unit: "m" },
-    Event {
-        words: "largest speed before branching",
-        value: "largest-speed",
-        study: "largest_speed_m_per_s",
-        unit: "m/s",
-    },
-    Event { words: "right edge: tip passes 99.5 mm", value: "right-edge-time", study: "right_edge_time_s", unit: "s" },
-    Event {
-        words: "distance from the axis there",
-        value: "right-edge-offset",
-        study: "right_edge_offset_m",
-        unit: "m",
-    },
+/// What an event is called, its value in the reference, and its unit.
+const EVENTS: [(&str, &str, &str); 6] = [
+    ("onset: tip passes 50.5 mm", "onset-time", "s"),
+    ("branching", "branching-time", "s"),
+    ("place of branching", "branching-x", "m"),
+    ("largest speed before branching", "largest-speed", "m/s"),
+    ("right edge: tip passes 99.5 mm", "right-edge-time", "s"),
+    ("distance from the axis there", "right-edge-offset", "m"),
 ];
 
 /// The time at which a tip first passes `goal`, interpolated, and the row.
@@ -78,7 +61,7 @@ fn values(x: &Curve, y: Option<&Curve>, branching: Option<f64>) -> [Option<f64>;
 
 /// Whether an event passes or fails at a spacing over l0; the onset always does.
 pub(super) fn decides_at(words: &str, spacing: f64) -> bool {
-    spacing <= EVENTS_DECIDE * (1.0 + 1e-9) || words == EVENTS[0].words
+    spacing <= EVENTS_DECIDE * (1.0 + 1e-9) || words == EVENTS[0].0
 }
 
 /// Verdicts on the events of the reference, and on branching where the reference does not branch.
@@ -95,11 +78,11 @@ pub fn events(
     let interval = smaller(widest, END); // nothing is less certain than to within the run
     let last = x.t[x.t.len() - 1];
     let mut out = Vec::new();
-    for (event, value) in EVENTS.iter().zip(found) {
-        let named = library.value("plate-family", &format!("{}/{}", variant.declared.name, event.value));
-        let mut row = Comparison { name: event.words.into(), unit: event.unit.into(), value, ..Comparison::default() };
+    for ((words, event, unit), value) in EVENTS.into_iter().zip(found) {
+        let named = library.value("plate-family", &format!("{}/{}", variant.declared.name, event));
+        let mut row = Comparison { name: words.into(), unit: unit.into(), value, ..Comparison::default() };
         let Some(reference) = named else {
-            if event.value == "branching-time" && value.is_some() {
+            if event == "branching-time" && value.is_some() {
                 row.outcome = Outcome::Fail;
                 row.why = "the crack branches; that of the reference does not".into();
                 out.push(row);
@@ -107,7 +90,7 @@ pub fn events(
             continue;
         };
         row.reference = Some(reference.value);
-        let needs_y = !["onset-time", "largest-speed", "right-edge-time"].contains(&event.value);
+        let needs_y = !["onset-time", "largest-speed", "right-edge-time"].contains(&event);
         if needs_y && y.is_none() {
             row.outcome = Outcome::Incomplete;
             row.why = "needs tip_y, at the times of tip_x".into();
@@ -116,7 +99,7 @@ pub fn events(
         }
         row.error = value.map(|v| v - reference.value);
         // what leaves the axis or the edge is known to a row only; the tip moves in between
-        let between = match event.value {
+        let between = match event {
             "onset-time" | "right-edge-time" => 0.5 * interval,
             "branching-time" => interval,
             "largest-speed" => 0.0,
@@ -127,21 +110,22 @@ pub fn events(
                         .map_or(0.0, |v| v.value)
             }
         };
-        let u_num = numerics.of_event(event.study);
+        let column = format!("{}_{}", event.replace('-', "_"), unit.replace('/', "_per_"));
+        let u_num = numerics.of_event(&column);
         let u_num = if between > 0.0 { Some(u_num.unwrap_or(0.0).hypot(between)) } else { u_num };
         decide(&mut row, reference.uncertainty.unwrap_or(0.0), u_num);
-        let agrees = if event.unit == "m" { AGREES[1] } else { AGREES[0] * reference.value };
+        let agrees = if unit == "m" { AGREES[1] } else { AGREES[0] * reference.value };
         doubt(&mut row, [f64::INFINITY, agrees]);
-        let due = if event.value.starts_with("right-edge") { END } else { reference.value.min(END) };
-        let late = event.unit == "s" && reference.value + row.u_val.unwrap_or(0.0) > last.min(due.max(END));
+        let due = if event.starts_with("right-edge") { END } else { reference.value.min(END) };
+        let late = unit == "s" && reference.value + row.u_val.unwrap_or(0.0) > last.min(due.max(END));
         if value.is_none() && late {
             (row.outcome, row.why) = (Outcome::Diagnostic, "not within the run, and it need not be".into());
-        } else if value.is_none() && last >= 0.95 * END && event.unit == "s" {
+        } else if value.is_none() && last >= 0.95 * END && unit == "s" {
             (row.outcome, row.why) = (Outcome::Fail, "it does not happen".into());
-        } else if value.is_none() && event.value == "right-edge-offset" {
+        } else if value.is_none() && event == "right-edge-offset" {
             (row.outcome, row.why) = (Outcome::Diagnostic, "the tip does not reach the edge".into());
         }
-        let decides = numerics.spacing().is_none_or(|h| decides_at(event.words, h));
+        let decides = numerics.spacing().is_none_or(|h| decides_at(words, h));
         if matches!(row.outcome, Outcome::Pass | Outcome::Fail) && !decides {
             (row.outcome, row.why) = (Outcome::Diagnostic, "spacings above l0/2 miss such events".into());
         }

@@ -6,8 +6,8 @@
 use fisura::scene::Scene;
 use fisura::simulation::Simulation;
 
-use super::{Case, CaseScene, Findings, StudyError, other};
-use crate::extremes::{larger, largest};
+use super::{Case, CaseScene, Findings, StudyError, other, samples};
+use crate::extremes::largest;
 
 pub(super) fn study(_case: &Case, scenes: &[CaseScene], findings: &mut Findings) -> Result<(), StudyError> {
     for scene in scenes {
@@ -19,11 +19,7 @@ pub(super) fn study(_case: &Case, scenes: &[CaseScene], findings: &mut Findings)
 
 fn ratio(scene: &Scene) -> Result<f64, StudyError> {
     let mut simulation = Simulation::new(scene)?;
-    let mut most_elastic = 0.0_f64;
-    while !simulation.finished() {
-        crate::watch::check()?;
-        most_elastic = larger(most_elastic, simulation.advance_to_next_sample()?.elastic);
-    }
+    let most_elastic = largest(samples(&mut simulation)?[1..].iter().map(|sample| sample.elastic));
     let (low, high) = scene.bodies[0].shape.bounding_box();
     let area = (high[0] - low[0]) * (high[1] - low[1]) * scene.analysis.thickness;
     let fracture = simulation.total_frame().and_then(|frame| frame.fracture.as_ref());

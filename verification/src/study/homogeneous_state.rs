@@ -23,6 +23,7 @@ use fisura::phase_field::fracture::LatticeFracture;
 use fisura::scene::{CrackModel, Fracture, Kinematics, Material, Plane, Scene, Side, Split};
 use fisura::splines::patch::Patch;
 use fisura::splines::patch::control_points_on;
+use fisura::transfer::finite::Elastic;
 use fisura::transfer::sweep::StripForces;
 
 use super::charts::curve;
@@ -205,10 +206,11 @@ impl Points<'_> {
         for at in grid.indices() {
             displacement[0][at] = strain * self.greville[grid.column_of(at)];
         }
-        fracture.update_history(lattice, 0.0, *moduli, Kinematics::Small, &displacement, forces);
+        let body = Elastic { lattice, moduli: *moduli, kinematics: Kinematics::Small };
+        fracture.update_history(body, 0.0, &displacement, forces);
         let solved = fracture.field.solve(lattice, &fracture.history);
         solved.map_err(unsolved)?;
-        fracture.degraded_forces(lattice, *moduli, Kinematics::Small, [&displacement[0], &displacement[1]], forces);
+        fracture.degraded_forces(body, &displacement, forces);
         let mut nodal = [grid.zeros(), grid.zeros()];
         forces.assemble(grid.stride, &mut nodal);
         let force: f64 = control_points_on(Side::Right, grid).into_iter().map(|at| nodal[0][at]).sum();

@@ -10,8 +10,9 @@ pub(super) mod split_families;
 pub(super) mod units;
 pub(super) mod unloading;
 
+use fisura::Simulation;
 use fisura::dynamics::total_frame::TotalFrame;
-use fisura::scene::Scene;
+use fisura::scene::{Scene, TimeStep};
 
 use super::scene::series_stem;
 use super::{StudyError, other};
@@ -27,4 +28,13 @@ fn total_frame(scene: &Scene) -> Result<TotalFrame, StudyError> {
 fn logarithmic(case: &Case, name: &str, title: &str, caption: &str, axes: [&str; 2], curves: Vec<Curve>) -> Figure {
     let body = FigureBody::chart(axes.map(Axis::logarithmic), curves, Vec::new());
     Figure::new(&case.suite, [&series_stem(case, name), title, caption], body)
+}
+
+/// A run of so many steps of `dt` (s), sampled every hundredth step.
+fn with_step(scene: &Scene, dt: f64, steps: usize) -> Result<Simulation, StudyError> {
+    let mut scene = scene.clone();
+    scene.analysis.time_step = TimeStep::Fixed(dt);
+    scene.analysis.end_time = dt * steps as f64;
+    scene.output.samples = steps.div_ceil(100);
+    Ok(Simulation::new(&scene)?)
 }

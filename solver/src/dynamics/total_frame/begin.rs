@@ -24,6 +24,7 @@ use crate::particles::lattice::{Lattice, STRIP_ROWS};
 use crate::phase_field::fracture::{LatticeFracture, crack_start};
 use crate::scene::{Body, Scene};
 use crate::splines::patch::Patch;
+use crate::transfer::finite::Elastic;
 use crate::transfer::sweep::StripForces;
 
 impl TotalFrame {
@@ -159,7 +160,8 @@ impl TotalFrame {
         if let Some(fracture) = &mut self.fracture {
             fracture.field.wake_everything();
             let Self { lattice, moduli, kinematics, displacement, strip_forces, .. } = self;
-            fracture.update_history(lattice, self.time, *moduli, *kinematics, displacement, strip_forces);
+            let body = Elastic { lattice, moduli: *moduli, kinematics: *kinematics };
+            fracture.update_history(body, self.time, displacement, strip_forces);
             fracture.field.initialise(&self.lattice, &fracture.history)?;
         }
         Ok(())
@@ -185,8 +187,8 @@ impl TotalFrame {
         self.constraints.start(&mut self.displacement, &mut self.velocity);
         let Some(edges) = &self.edges else { return };
         edges.start(&mut self.displacement, &mut self.velocity);
-        self.lattice.spread(&mut self.displacement);
-        self.lattice.spread(&mut self.velocity);
+        self.lattice.sheets.spread(&mut self.displacement);
+        self.lattice.sheets.spread(&mut self.velocity);
     }
 
     /// Stores or takes up what steps change.

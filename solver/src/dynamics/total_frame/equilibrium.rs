@@ -5,7 +5,6 @@
 //! product. Loads that would accelerate it are refused; what is left of them by round-off is taken away.
 
 use super::TotalFrame;
-use super::stiffness::Tangent;
 use crate::dynamics::critical_step::{StiffnessOperator, dot};
 use crate::dynamics::failure::Failure;
 use crate::linear_algebra::extremes::{larger, largest};
@@ -83,7 +82,7 @@ impl TotalFrame {
         for (&(at, component), change) in free.iter().zip(change) {
             self.displacement[component][at] += part * change;
         }
-        self.lattice.spread(&mut self.displacement);
+        self.lattice.sheets.spread(&mut self.displacement);
     }
 
     /// External minus internal force at the free components, and the largest internal or external one, N/m.
@@ -136,7 +135,7 @@ impl TotalFrame {
     /// Solves `K x = right` for the free components, to [`REDUCTION`] of the residual, without these motions:
     /// what round-off leaves of them would grow, since they have no stiffness.
     fn solve(&self, free: &[(usize, usize)], motions: &[Vec<f64>], right: &[f64]) -> Result<Vec<f64>, Failure> {
-        let (mut operator, n) = (Tangent::new(self), right.len());
+        let (mut operator, n) = (self.tangent(), right.len());
         let (mut x, mut r, mut image) = (vec![0.0; n], right.to_vec(), vec![0.0; n]);
         let mut z = vec![0.0; n];
         operator.divide_by_mass(&r, &mut z);

@@ -26,7 +26,7 @@ impl TotalFrame {
             return Vec::new();
         }
         let mut acceleration = self.acceleration.clone();
-        self.lattice.spread(&mut acceleration);
+        self.lattice.sheets.spread(&mut acceleration);
         self.domains.iter().map(|domain| (domain.column.clone(), self.j_integral(domain, &acceleration))).collect()
     }
 

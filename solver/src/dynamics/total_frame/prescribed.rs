@@ -108,7 +108,7 @@ impl Reactions {
 /// Control points of the side; of a part of it, or where a slit ends on it, those whose functions have at
 /// least half of their integral along the side on the part.
 pub(super) fn held_points(patch: &Patch, lattice: &Lattice, body: &Body, boundary: &Boundary) -> Vec<usize> {
-    if boundary.part.is_none() && lattice.sheets().is_none() {
+    if boundary.part.is_none() && lattice.sheets.is_empty() {
         return control_points_on(boundary.side, lattice.grid);
     }
     let along = boundary.side.along();

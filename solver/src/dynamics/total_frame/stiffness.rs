@@ -10,7 +10,7 @@ use crate::linear_algebra::extremes::smaller;
 use crate::linear_algebra::lane::Lane;
 use crate::phase_field::fracture::LatticeFracture;
 use crate::scene::{Kinematics, Split};
-use crate::transfer::finite::{elastic_forces, gradients, sweep_along, sweep_with};
+use crate::transfer::finite::{Elastic, elastic_forces, gradients, sweep_along, sweep_with};
 use crate::transfer::kernels::{ElasticStress, HeldPhaseStress, LeastStretch};
 use crate::transfer::point_kernel::Fields;
 use crate::transfer::sweep::{StripForces, sweep};
@@ -35,20 +35,19 @@ impl TotalFrame {
 
     /// Internal forces (N/m) of the undamaged body under a displacement (m), linear in it.
     pub(crate) fn elastic_forces(&self, displacement: &VectorField, strips: &mut StripForces, out: &mut VectorField) {
-        elastic_forces(&self.lattice, self.moduli, Kinematics::Small, displacement, strips, out);
+        let body = Elastic { lattice: &self.lattice, moduli: self.moduli, kinematics: Kinematics::Small };
+        elastic_forces(body, displacement, strips, out);
         self.lattice.fold(out);
     }
 
     /// Stiffness of the undamaged body on its free degrees of freedom.
     pub fn stiffness_operator(&self) -> LatticeStiffness<'_> {
-        let zeros = || [self.grid.zeros(), self.grid.zeros()];
-        LatticeStiffness {
-            frame: self,
-            free: self.free_components(),
-            field: zeros(),
-            image: zeros(),
-            strips: self.strip_forces.clone(),
-        }
+        LatticeStiffness::new(self, None)
+    }
+
+    /// Tangent stiffness on the free degrees of freedom; the geometric part is in it.
+    pub(super) fn tangent(&self) -> LatticeStiffness<'_> {
+        LatticeStiffness::new(self, Some(gradients(&self.lattice, &self.displacement)))
     }
 
     /// Takes the critical time step (s) of the body as it is now if finite strains may have made it shorter
@@ -64,7 +63,7 @@ impl TotalFrame {
             return None;
         }
         self.judged_stiffening = stiffening;
-        let frequency = highest_frequency(&mut Tangent::new(self));
+        let frequency = highest_frequency(&mut self.tangent());
         Some(2.0 / frequency).filter(|step| *step > 0.0)
     }
 
@@ -93,13 +92,14 @@ impl TotalFrame {
     pub(super) fn forces_now(&self) -> VectorField {
         let Self { lattice, moduli, kinematics, displacement, fracture, .. } = self;
         let (mut out, mut strips) = ([self.grid.zeros(), self.grid.zeros()], self.strip_forces.clone());
+        let body = Elastic { lattice, moduli: *moduli, kinematics: *kinematics };
         if let Some(fracture) = fracture {
             let mut kernels: Vec<_> = self.held_phase(fracture).collect();
             let fields = Fields { displacement: [&displacement[0], &displacement[1]], phase: &[] };
-            sweep_with(*kinematics, lattice, fields, &mut kernels, Some(&mut strips));
+            sweep_with(body, fields, &mut kernels, Some(&mut strips));
             strips.assemble(lattice.grid.stride, &mut out);
         } else {
-            elastic_forces(lattice, *moduli, *kinematics, displacement, &mut strips, &mut out);
+            elastic_forces(body, displacement, &mut strips, &mut out);
         }
         lattice.fold(&mut out);
         out
@@ -113,45 +113,55 @@ impl TotalFrame {
     }
 }
 
-/// Stiffness of the undamaged body on its free degrees of freedom, per unit thickness.
+/// Stiffness on the free degrees of freedom, per unit thickness.
 #[derive(Debug)]
 pub struct LatticeStiffness<'a> {
     frame: &'a TotalFrame,
     /// Control points and components that move.
     pub free: Vec<(usize, usize)>,
-    pub(super) field: VectorField,
+    field: VectorField,
     image: VectorField,
     strips: StripForces,
+    /// Displacement gradients that the tangent belongs to; none for the undamaged body at rest.
+    gradients: Option<Vec<[Lane; 4]>>,
 }
 
-impl LatticeStiffness<'_> {
-    /// Writes a motion of the free degrees of freedom into [`Self::field`].
-    pub(super) fn unpack(&mut self, x: &[f64]) {
+impl<'a> LatticeStiffness<'a> {
+    fn new(frame: &'a TotalFrame, gradients: Option<Vec<[Lane; 4]>>) -> Self {
+        let [field, image] = [(); 2].map(|()| [frame.grid.zeros(), frame.grid.zeros()]);
+        let (free, strips) = (frame.free_components(), frame.strip_forces.clone());
+        Self { frame, free, field, image, strips, gradients }
+    }
+
+    /// Writes a motion of the free degrees of freedom into the field.
+    fn unpack(&mut self, x: &[f64]) {
         for (&(at, component), x) in self.free.iter().zip(x) {
             self.field[component][at] = *x;
         }
-        self.frame.lattice.spread(&mut self.field);
-    }
-
-    /// Adds what springs along a boundary that may meet others answer to the motion in [`Self::field`].
-    pub(super) fn add_springs(&self, forces: &mut VectorField) {
-        if let Some(boundary) = &self.frame.boundary {
-            boundary.add_springs(&self.field, forces);
-        }
-    }
-
-    /// Forces on the free degrees of freedom, without what conditions on edges carry: what they would leave
-    /// to round-off grows from iteration to iteration (Gould, Hribar and Nocedal 2001).
-    pub(super) fn pack_forces(&self, forces: &mut VectorField, out: &mut [f64]) {
-        if let Some(edges) = &self.frame.edges {
-            edges.multipliers.project_forces(forces);
-        }
-        self.pack(forces, out);
+        self.frame.lattice.sheets.spread(&mut self.field);
     }
 
     fn pack(&self, field: &VectorField, out: &mut [f64]) {
         for (&(at, component), out) in self.free.iter().zip(out) {
             *out = field[component][at];
+        }
+    }
+
+    /// Change of the internal forces along the motion at hand, with the phase field at the points as it is
+    /// now, less that of loads that follow.
+    fn forces_along(&mut self, image: &mut VectorField) {
+        let Self { frame, field, strips, gradients: Some(gradients), .. } = self else { return };
+        let TotalFrame { lattice, moduli, kinematics, fracture, .. } = frame;
+        if let Some(fracture) = fracture {
+            sweep_along(*kinematics, lattice, gradients, field, frame.held_phase(fracture), strips);
+        } else {
+            let kernels = (0..lattice.strips()).map(|_| ElasticStress { moduli: *moduli, energy: Lane::ZERO });
+            sweep_along(*kinematics, lattice, gradients, field, kernels, strips);
+        }
+        strips.assemble(lattice.grid.stride, image);
+        lattice.fold(image);
+        for load in &frame.loads {
+            load.add_change(-load.factor.at(frame.time), field, image);
         }
     }
 }
@@ -161,12 +171,22 @@ impl StiffnessOperator for LatticeStiffness<'_> {
         self.free.len()
     }
 
+    /// Without what conditions on edges carry: what they would leave to round-off grows from iteration to
+    /// iteration (Gould, Hribar and Nocedal 2001).
     fn stiffness(&mut self, x: &[f64], out: &mut [f64]) {
         self.unpack(x);
         let mut image = std::mem::take(&mut self.image);
-        self.frame.elastic_forces(&self.field, &mut self.strips, &mut image);
-        self.add_springs(&mut image);
-        self.pack_forces(&mut image, out);
+        match &self.gradients {
+            None => self.frame.elastic_forces(&self.field, &mut self.strips, &mut image),
+            Some(_) => self.forces_along(&mut image),
+        }
+        if let Some(boundary) = &self.frame.boundary {
+            boundary.add_springs(&self.field, &mut image);
+        }
+        if let Some(edges) = &self.frame.edges {
+            edges.multipliers.project_forces(&mut image);
+        }
+        self.pack(&image, out);
         self.image = image;
     }
 
@@ -178,66 +198,5 @@ impl StiffnessOperator for LatticeStiffness<'_> {
             edges.multipliers.project(&mut quotient);
         }
         self.pack(&quotient, out);
-    }
-}
-
-/// Tangent stiffness on the free degrees of freedom; the geometric part is in it.
-pub(super) struct Tangent<'a> {
-    frame: &'a TotalFrame,
-    undeformed: LatticeStiffness<'a>,
-    gradients: Vec<[Lane; 4]>,
-    strips: StripForces,
-    forces: VectorField,
-}
-
-impl<'a> Tangent<'a> {
-    pub(super) fn new(frame: &'a TotalFrame) -> Self {
-        Self {
-            frame,
-            undeformed: frame.stiffness_operator(),
-            gradients: gradients(&frame.lattice, &frame.displacement),
-            strips: frame.strip_forces.clone(),
-            forces: [frame.grid.zeros(), frame.grid.zeros()],
-        }
-    }
-
-    /// Change of the internal forces along the motion at hand, with the phase field at the points as it is
-    /// now.
-    fn forces_along(&mut self) {
-        let Self { frame, undeformed, gradients, strips, forces } = self;
-        let direction = &undeformed.field;
-        let TotalFrame { lattice, moduli, kinematics, fracture, .. } = frame;
-        match fracture {
-            None => {
-                let kernels = (0..lattice.strips()).map(|_| ElasticStress { moduli: *moduli, energy: Lane::ZERO });
-                sweep_along(*kinematics, lattice, gradients, direction, kernels, strips);
-            }
-            Some(fracture) => {
-                let kernels = frame.held_phase(fracture);
-                sweep_along(*kinematics, lattice, gradients, direction, kernels, strips);
-            }
-        }
-        strips.assemble(lattice.grid.stride, forces);
-        lattice.fold(forces);
-    }
-}
-
-impl StiffnessOperator for Tangent<'_> {
-    fn size(&self) -> usize {
-        self.undeformed.size()
-    }
-
-    fn stiffness(&mut self, x: &[f64], out: &mut [f64]) {
-        self.undeformed.unpack(x);
-        self.forces_along();
-        for load in &self.frame.loads {
-            load.add_change(-load.factor.at(self.frame.time), &self.undeformed.field, &mut self.forces);
-        }
-        self.undeformed.add_springs(&mut self.forces);
-        self.undeformed.pack_forces(&mut self.forces, out);
-    }
-
-    fn divide_by_mass(&mut self, x: &[f64], out: &mut [f64]) {
-        self.undeformed.divide_by_mass(x, out);
     }
 }

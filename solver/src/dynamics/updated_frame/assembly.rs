@@ -5,7 +5,7 @@
 //! ```
 
 use super::fictitious::FictitiousMaterial;
-use super::transfer::walk;
+use super::transfer::walks;
 use super::windows::{Window, scatter};
 use crate::linear_algebra::active_columns::ActiveColumns;
 use crate::linear_algebra::lane::{LANES, Lane, Vectorised, dispatch};
@@ -70,14 +70,7 @@ struct AssemblePoints<'a> {
     window: Window<'a, f64, 2>,
 }
 
-impl Vectorised for AssemblePoints<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<const FMA: bool>(self) {
-        walk!(self, FMA, walk::<FMA>)
-    }
-}
+walks!([] AssemblePoints<'_> => ());
 
 /// Most pairs of functions of a direction, each with itself and those after it, and their batches.
 const PAIRS: usize = MAX_ORDER * (MAX_ORDER + 1) / 2;

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::assembly::assemble;
 use super::fictitious::FictitiousMaterial;
-use super::transfer::{contract, gather, walk};
+use super::transfer::{contract, gather, walks};
 use super::windows::cut;
 use crate::checkpoint::{Archive, StateError};
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
@@ -195,18 +195,11 @@ struct UpdateStress<'a> {
     fracture: &'a mut [FracturePoint],
 }
 
-impl Vectorised for UpdateStress<'_> {
-    type Output = PointSums;
-
-    #[inline(always)]
-    fn run<const FMA: bool>(self) -> PointSums {
-        walk!(self, FMA)
-    }
-}
+walks!([] UpdateStress<'_> => PointSums);
 
 impl UpdateStress<'_> {
     #[inline(always)]
-    fn walk(mut self, kx: usize, ky: usize) -> PointSums {
+    fn walk<const FMA: bool>(mut self, kx: usize, ky: usize) -> PointSums {
         let mut sums = PointSums { least_phase: f64::INFINITY, ..Default::default() };
         let offset = self.cells.first().map_or(0, |cell| cell.points.start);
         let mut phases = [0.0; LANES];

@@ -1,7 +1,7 @@
 //! Stiffness of the undamaged body at the present positions, for the critical step.
 
 use super::field::DiscreteField;
-use super::transfer::walk;
+use super::transfer::walks;
 use super::velocity_transfer::stable_fraction;
 use super::windows::{Reach, Window, scatter};
 use crate::contact::constraint::BoundaryFunctions;
@@ -114,18 +114,11 @@ struct ElasticForces<'a> {
     window: Window<'a, [f64; 4], 1>,
 }
 
-impl Vectorised for ElasticForces<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<const FMA: bool>(self) {
-        walk!(self, FMA)
-    }
-}
+walks!([] ElasticForces<'_> => ());
 
 impl ElasticForces<'_> {
     #[inline(always)]
-    fn walk(mut self, kx: usize, ky: usize) {
+    fn walk<const FMA: bool>(mut self, kx: usize, ky: usize) {
         let ElasticModuli { lambda, mu, .. } = self.moduli;
         let Window { first_row, fields: [parts] } = &mut self.window;
         for cell in self.cells {

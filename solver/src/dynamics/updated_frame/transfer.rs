@@ -37,21 +37,25 @@ use crate::splines::spline::MAX_REACH;
 
 /// Instantiates a walk over the usual degrees with loops of constant length on wide processors; any other
 /// runs the same code.
-macro_rules! walk {
-    ($self:ident, $wide:ident) => {
-        walk!($self, $wide, walk)
-    };
-    ($self:ident, $wide:ident, $($walk:tt)+) => {
-        match $self.patch.spaces.each_ref().map(|space| space.degree()) {
-            [p, q] if !$wide => $self.$($walk)+(p + 1, q + 1),
-            [1, 1] => $self.$($walk)+(2, 2),
-            [2, 2] => $self.$($walk)+(3, 3),
-            [3, 3] => $self.$($walk)+(4, 4),
-            [p, q] => $self.$($walk)+(p + 1, q + 1),
+macro_rules! walks {
+    ([$($generic:tt)*] $kernel:ty => $output:ty) => {
+        impl $($generic)* Vectorised for $kernel {
+            type Output = $output;
+
+            #[inline(always)]
+            fn run<const FMA: bool>(self) -> $output {
+                match self.patch.spaces.each_ref().map(|space| space.degree()) {
+                    [p, q] if !FMA => self.walk::<FMA>(p + 1, q + 1),
+                    [1, 1] => self.walk::<FMA>(2, 2),
+                    [2, 2] => self.walk::<FMA>(3, 3),
+                    [3, 3] => self.walk::<FMA>(4, 4),
+                    [p, q] => self.walk::<FMA>(p + 1, q + 1),
+                }
+            }
         }
     };
 }
-pub(super) use walk;
+pub(super) use walks;
 
 /// P2G: mass, momentum and internal force of the points of a strip.
 pub struct PointsToGrid<'a> {
@@ -71,18 +75,11 @@ pub struct PointsToGrid<'a> {
     pub window: Window<'a, [f64; 5], 1>,
 }
 
-impl Vectorised for PointsToGrid<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<const FMA: bool>(self) {
-        walk!(self, FMA)
-    }
-}
+walks!([] PointsToGrid<'_> => ());
 
 impl PointsToGrid<'_> {
     #[inline(always)]
-    fn walk(mut self, kx: usize, ky: usize) {
+    fn walk<const FMA: bool>(mut self, kx: usize, ky: usize) {
         let Window { first_row, fields: [sums] } = &mut self.window;
         for cell in self.cells {
             for at in cell.points.clone() {
@@ -169,18 +166,11 @@ struct PointMotion {
     moved: [f64; 2],
 }
 
-impl<K: StrainUpdate> Vectorised for GridToPoints<'_, K> {
-    type Output = StripMotion;
-
-    #[inline(always)]
-    fn run<const FMA: bool>(self) -> StripMotion {
-        walk!(self, FMA)
-    }
-}
+walks!([<K: StrainUpdate>] GridToPoints<'_, K> => StripMotion);
 
 impl<K: StrainUpdate> GridToPoints<'_, K> {
     #[inline(always)]
-    fn walk(mut self, kx: usize, ky: usize) -> StripMotion {
+    fn walk<const FMA: bool>(mut self, kx: usize, ky: usize) -> StripMotion {
         let mut motion = StripMotion::default();
         let offset = self.cells.first().map_or(0, |cell| cell.points.start);
         let mut increments = [[0.0; 3]; LANES];

@@ -38,7 +38,7 @@
 //! all fields but the constant; that is the loss of PIC, and what XPIC corrects.
 
 use super::grid::NodalFields;
-use super::transfer::walk;
+use super::transfer::walks;
 use super::windows::{Reach, Window, scatter, side_by_side};
 use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
 use crate::linear_algebra::lane::{Vectorised, dispatch, each};
@@ -157,18 +157,11 @@ struct GridToGrid<'a> {
     window: Window<'a, [f64; 2], 1>,
 }
 
-impl Vectorised for GridToGrid<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<const FMA: bool>(self) {
-        walk!(self, FMA)
-    }
-}
+walks!([] GridToGrid<'_> => ());
 
 impl GridToGrid<'_> {
     #[inline(always)]
-    fn walk(mut self, kx: usize, ky: usize) {
+    fn walk<const FMA: bool>(mut self, kx: usize, ky: usize) {
         let Window { first_row, fields: [sums] } = &mut self.window;
         for cell in self.cells {
             for point in &self.points[cell.points.clone()] {

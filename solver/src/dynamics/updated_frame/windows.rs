@@ -115,18 +115,16 @@ pub(super) fn control_sums(
     sums
 }
 
-/// Runs `work` once per strip with its window of `fields`, rows of `row_lengths` items; results in the
-/// order of strips.
+/// Runs `work` once per strip with its window of `fields`, rows of `row_lengths` items.
 ///
 /// Strips of one colour (even or odd) share no control row and run side by side, first the even, then the
 /// odd: the order of additions at a control point does not depend on the number of threads.
-pub fn scatter<T: Send, const N: usize, R: Send>(
+pub fn scatter<T: Send, const N: usize>(
     strips: &[Strip],
     mut fields: [&mut [T]; N],
     row_lengths: [usize; N],
-    work: impl Fn(&Strip, Window<T, N>) -> R + Sync,
-) -> Vec<R> {
-    let mut results: Vec<(usize, R)> = Vec::with_capacity(strips.len());
+    work: impl Fn(&Strip, Window<T, N>) + Sync,
+) {
     for colour in 0..2 {
         let mut rest = fields.each_mut().map(|field| &mut **field);
         let mut passed = 0;
@@ -143,11 +141,8 @@ pub fn scatter<T: Send, const N: usize, R: Send>(
             passed = rows.end;
             windows.push((strip, Window { first_row: rows.start, fields }));
         }
-        let part = windows.into_par_iter().map(|(strip, window)| (strip.index, work(strip, window)));
-        results.extend(part.collect::<Vec<_>>());
+        windows.into_par_iter().for_each(|(strip, window)| work(strip, window));
     }
-    results.sort_by_key(|(index, _)| *index);
-    results.into_iter().map(|(_, result)| result).collect()
 }
 
 /// Cuts a slice into neighbouring ranges that cover it.

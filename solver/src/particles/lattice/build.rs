@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use super::cut::{EdgesInSpans, PointBox, Rules, cut_spans, edges_in_spans};
-use super::sheets::Gaps;
+use super::sheets::{Gaps, Sheets};
 use super::tables::{CutPoint, MappedPoint, Mapping, first_function, tiles};
 use super::tips::lengthened;
 use super::{Lattice, STRIP_ROWS, directions, fills_lattice};
@@ -46,8 +46,7 @@ impl Lattice {
         }
         if !fills || !slits.is_empty() {
             lattice.part(&slits, &gaps, &mut cut);
-            let shape = (!fills).then(|| body.shape.clone());
-            lattice.sheets.iter_mut().for_each(|sheets| (sheets.slits, sheets.shape) = (slits.clone(), shape.clone()));
+            (lattice.sheets.slits, lattice.sheets.shape) = (slits, (!fills).then(|| body.shape.clone()));
         }
         if !cut.is_empty() {
             lattice.append_cut(patch, cut);
@@ -73,7 +72,7 @@ impl Lattice {
             mapping: None,
             factor: None,
             occupied: None,
-            sheets: None,
+            sheets: Sheets::default(),
             cut: Vec::new(),
         };
         if let Some(geometry) = &patch.geometry {

@@ -91,7 +91,7 @@ impl Lattice {
             found.extend(self.grid, &mut mapping.weights);
         }
         self.grid = ControlGrid::new(self.grid.columns, control_rows);
-        self.sheets = Some(Box::new(found));
+        self.sheets = found;
         windows
     }
 
@@ -122,7 +122,7 @@ impl Lattice {
             }
         }
         let positions: Vec<_> = moved.iter().map(|&(batch, _, lane, ..)| self.position(batch, lane)).collect();
-        let (Some(factor), Some(sheets)) = (&mut self.factor, &mut self.sheets) else { return };
+        let Self { factor: Some(factor), sheets, .. } = self else { return };
         for ((old, new, lane, first, lift), position) in moved.into_iter().zip(positions) {
             sheets.points.entry(first).or_default().push((position, lift));
             factor[new][lane] = factor[old][lane];

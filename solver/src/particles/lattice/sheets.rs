@@ -34,6 +34,11 @@ pub(crate) struct Sheets {
 }
 
 impl Sheets {
+    /// Whether no control point is there twice.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
     /// Rows by which the control points of a position (m) lie behind those of the patch, in the span with
     /// this first control point: those of the nearest point on its side of slits and gaps, if one is there.
     pub(crate) fn lift(&self, first: FunctionIndex, position: [f64; 2]) -> usize {

@@ -27,12 +27,6 @@ pub const EVENTS: [&str; 6] = [
     "contact ends",
 ];
 
-/// The wall of a ring on the line of centres, on the side of the contact or at the rear.
-struct Wall {
-    /// Smallest phase field of the points in every interval from the inner edge outwards.
-    phases: Vec<f64>,
-}
-
 /// A ring of a run that is being watched.
 #[derive(Debug)]
 pub struct Watch {
@@ -49,32 +43,6 @@ pub struct Watch {
     thickness: f64,
     /// What is watched, row by row.
     pub table: Table,
-}
-
-impl Wall {
-    /// Without a point in its intervals.
-    fn of(intervals: usize) -> Self {
-        Self { phases: vec![f64::INFINITY; intervals] }
-    }
-
-    /// Takes the phase field of a point at a distance from the inner edge, in intervals.
-    fn see(&mut self, at: f64, phase: f64) {
-        if at >= 0.0
-            && let Some(least) = self.phases.get_mut(at as usize)
-        {
-            *least = smaller(*least, phase);
-        }
-    }
-
-    /// Whether the crack has begun at the inner edge.
-    fn begun(&self) -> bool {
-        self.phases.first().is_some_and(|c| *c < BROKEN)
-    }
-
-    /// Part of the intervals that are broken.
-    fn broken(&self) -> f64 {
-        self.phases.iter().filter(|c| **c < BROKEN).count() as f64 / self.phases.len() as f64
-    }
 }
 
 /// Radii of the first body: an annulus, or what is left of one. Its centre, inner and outer radius, m.
@@ -142,10 +110,12 @@ impl Watch {
             self.table.names.extend(own);
             self.table.columns.resize(self.table.names.len(), Vec::new());
         }
+        let is_broken = |phase: &&f64| **phase < BROKEN;
+        let part = |wall: &[f64]| wall.iter().filter(is_broken).count() as f64 / wall.len() as f64;
         let [front, rear] = &seen.walls;
         let aside = if seen.broken > 0.0 { seen.aside / seen.broken } else { 0.0 };
-        let begun = [front, rear].map(|wall| yes(wall.begun()));
-        let mut row = vec![front.broken(), rear.broken(), begun[0], begun[1], force, elastic, damage, aside];
+        let begun = [front, rear].map(|wall| yes(wall.first().is_some_and(|phase| *phase < BROKEN)));
+        let mut row = vec![part(front), part(rear), begun[0], begun[1], force, elastic, damage, aside];
         row.extend(sample.named_values().iter().map(|(_, value)| value));
         self.table.push(&row);
     }
@@ -180,8 +150,9 @@ impl Watch {
 
 /// What is seen of a ring at one time.
 struct Seen {
-    /// Towards the contact, and at the rear.
-    walls: [Wall; 2],
+    /// Smallest phase field of the points in every interval from the inner edge outwards on the line of
+    /// centres, of the wall towards the contact and of that at the rear.
+    walls: [Vec<f64>; 2],
     /// Elastic energy, J/m.
     elastic: f64,
     /// Integral of (1 − c)², m².
@@ -193,7 +164,7 @@ struct Seen {
 
 impl Seen {
     fn of(ring: &Watch) -> Self {
-        let walls = [0, 1].map(|_| Wall::of(ring.intervals()));
+        let walls = [(); 2].map(|()| vec![f64::INFINITY; ring.intervals()]);
         Self { walls, elastic: 0.0, damage: 0.0, broken: 0.0, aside: 0.0 }
     }
 
@@ -205,7 +176,12 @@ impl Seen {
         let [x, y] = [0, 1].map(|d| point.present[d] - point.displacement[d] - ring.center[d]);
         if y.abs() <= ring.strip {
             let wall = usize::from(ring.side * x < 0.0);
-            self.walls[wall].see((x.abs() - ring.radii[0]) / ring.interval, phase);
+            let at = (x.abs() - ring.radii[0]) / ring.interval;
+            if at >= 0.0
+                && let Some(least) = self.walls[wall].get_mut(at as usize)
+            {
+                *least = smaller(*least, phase);
+            }
         }
         if phase < BROKEN {
             self.broken += point.area;

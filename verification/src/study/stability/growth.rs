@@ -5,18 +5,17 @@
 //! step. The largest ω is that of a dense eigenvalue. Below, the staggered energy is constant and bounds the
 //! elastic energy by `1/(1 − (ω dt/2)²)` of it.
 
-use fisura::Simulation;
-use fisura::scene::{Boundary, Mesh, Scene, Shape, Side, TimeStep};
+use fisura::scene::{Boundary, Mesh, Scene, Shape, Side};
 
-use super::total_frame;
-use crate::extremes::larger;
+use super::{total_frame, with_step};
+use crate::extremes::largest;
 use crate::output::history::Table;
 use crate::record::{Axis, CurveStyle, Figure, FigureBody, Reference};
 use crate::scene::plain::PlainScene;
 use crate::study::charts::curve;
 use crate::study::dense;
 use crate::study::scene::series_stem;
-use crate::study::{Case, CaseScene, Findings, StudyError, other, theory, yes};
+use crate::study::{Case, CaseScene, Findings, StudyError, other, samples, theory, yes};
 
 /// Time steps over the critical one.
 const RATIOS: [f64; 3] = [BELOW, 1.01, ABOVE];
@@ -97,25 +96,11 @@ fn elastic_energies(scene: &Scene, dt: f64, steps: usize) -> Result<Vec<f64>, St
     Ok(energies)
 }
 
-fn with_step(scene: &Scene, dt: f64, steps: usize) -> Result<Simulation, StudyError> {
-    let mut scene = scene.clone();
-    scene.analysis.time_step = TimeStep::Fixed(dt);
-    scene.analysis.end_time = dt * steps as f64;
-    scene.output.samples = steps.div_ceil(100);
-    Ok(Simulation::new(&scene)?)
-}
-
 fn below(scene: &Scene, ratio: f64, step: f64) -> Result<[f64; 2], StudyError> {
-    let mut simulation = with_step(scene, step, LONG)?;
-    let start = simulation.sample();
-    let (mut elastic, mut closure) = (0.0_f64, 0.0_f64);
-    while !simulation.finished() {
-        crate::watch::check()?;
-        let sample = simulation.advance_to_next_sample()?;
-        elastic = larger(elastic, sample.elastic);
-        closure = larger(closure, sample.closure.abs());
-    }
-    let energy = start.stored();
+    let samples = samples(&mut with_step(scene, step, LONG)?)?;
+    let (energy, later) = (samples[0].stored(), &samples[1..]);
+    let elastic = largest(later.iter().map(|sample| sample.elastic));
+    let closure = largest(later.iter().map(|sample| sample.closure.abs()));
     let bound = 1.0 / (1.0 - ratio * ratio);
     Ok([elastic / (bound * energy), closure / energy])
 }

@@ -5,18 +5,17 @@
 //! volume the frequency rises with the bulk modulus, as `1/(1 − 2 nu)` in its square: it locks. A run at nu =
 //! 0.4999 is held to its ledger.
 
-use fisura::Simulation;
-use fisura::scene::{Boundary, Mesh, Scene, Side, TimeStep};
+use fisura::scene::{Boundary, Mesh, Scene, Side};
 
-use super::{logarithmic, total_frame};
-use crate::extremes::larger;
+use super::{logarithmic, total_frame, with_step};
+use crate::extremes::largest;
 use crate::output::history::Table;
 use crate::record::{CurveStyle, Reference, ReferenceKind};
 use crate::scene::plain::PlainScene;
 use crate::study::charts::curve;
 use crate::study::dense;
 use crate::study::scene::series_stem;
-use crate::study::{Case, CaseScene, Findings, StudyError, exact};
+use crate::study::{Case, CaseScene, Findings, StudyError, exact, samples};
 
 const RATIOS: [f64; 4] = [0.3, 0.49, 0.499, 0.4999];
 const SPANS: usize = 8;
@@ -80,15 +79,6 @@ fn lowest_frequency(scene: &Scene) -> Result<f64, StudyError> {
 /// Largest closure over the energy at t = 0 of a run of steps of `dt` (s).
 fn closure(mut scene: Scene, dt: f64) -> Result<f64, StudyError> {
     scene.bodies[0].velocity = [1e-3, 3e-4];
-    scene.analysis.time_step = TimeStep::Fixed(dt);
-    scene.analysis.end_time = dt * STEPS as f64;
-    scene.output.samples = 20;
-    let mut simulation = Simulation::new(&scene)?;
-    let energy = simulation.sample().stored();
-    let mut closure = 0.0_f64;
-    while !simulation.finished() {
-        crate::watch::check()?;
-        closure = larger(closure, simulation.advance_to_next_sample()?.closure.abs());
-    }
-    Ok(closure / energy)
+    let samples = samples(&mut with_step(&scene, dt, STEPS)?)?;
+    Ok(largest(samples[1..].iter().map(|sample| sample.closure.abs())) / samples[0].stored())
 }

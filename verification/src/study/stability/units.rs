@@ -15,7 +15,7 @@ use crate::record::CurveStyle;
 use crate::scene::plain::PlainScene;
 use crate::study::charts::{chart, curve};
 use crate::study::scene::series_stem;
-use crate::study::{Case, CaseScene, Findings, StudyError, exact};
+use crate::study::{Case, CaseScene, Findings, StudyError, exact, samples};
 
 /// Thickness, m: neither one metre nor one millimetre.
 const THICKNESS: f64 = 2.5e-3;
@@ -46,7 +46,7 @@ pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene], findings: &mut
     let mut table = Table::new(&["sample"]);
     table.columns = vec![(0..=SAMPLES).map(|i| i as f64).collect()];
     for (name, cracked) in [("elastic", false), ("cracking", true)] {
-        let run = |units: Units| findings.compute(|| run(&plate(units, cracked)));
+        let run = |units: Units| findings.compute(|| samples(&mut Simulation::new(&plate(units, cracked))?));
         let (si, millimetre) = (run(METRE_KILOGRAM)?, run(MILLIMETRE_TONNE)?);
         let factor = MILLIMETRE_TONNE.energy();
         for (quantity, value) in [
@@ -86,16 +86,6 @@ pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene], findings: &mut
     findings.figures.push(chart(case, "energies", "Elastic energy in two systems of units", caption, axes, curves));
     findings.series.push((stem, table));
     Ok(())
-}
-
-fn run(scene: &Scene) -> Result<Vec<Sample>, StudyError> {
-    let mut simulation = Simulation::new(scene)?;
-    let mut samples = vec![simulation.sample()];
-    while !simulation.finished() {
-        crate::watch::check()?;
-        samples.push(simulation.advance_to_next_sample()?);
-    }
-    Ok(samples)
 }
 
 /// A glass plate, 4 mm × 8 mm, between rollers left and right, pulled at top and bottom by 1 MPa for a
