@@ -127,7 +127,8 @@ fn a_driven_side_moves_as_prescribed() {
 #[test]
 fn what_refinement_changes_is_a_term_of_the_ledger() {
     for (degree, halvings, model) in [(2, 1, 0), (3, 1, 0), (2, 2, 0), (2, 1, 1), (3, 2, 1), (2, 1, 2)] {
-        let mut scene = of_model(model, refined(degree, [64, 32], halvings));
+        let cells = [128 >> halvings, 64 >> halvings];
+        let mut scene = of_model(model, refined(degree, cells, halvings));
         scene.bodies[0].velocity = [3.0, 1.0];
         let (simulation, samples) = run(&scene);
         let (first, last) = (&samples[0], samples.last().unwrap());
@@ -147,7 +148,7 @@ fn what_refinement_changes_is_a_term_of_the_ledger() {
             simulation.for_each_point(&mut |_| points += 1);
             points
         };
-        let coarse = 64 * 32 * degree.pow(2);
+        let coarse = cells[0] * cells[1] * degree.pow(2);
         let [start, end] = [points(&Simulation::new(&scene).unwrap()), points(&simulation)];
         assert!(coarse < start && start < end && end <= coarse << (2 * halvings), "{start} points, then {end}");
     }
