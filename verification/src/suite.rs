@@ -178,3 +178,38 @@ fn inputs(cases: &[Case]) -> BTreeMap<String, String> {
 fn write_series(out: &OutputFolder, stem: &str, table: &crate::output::history::Table) -> Result<(), VerifyError> {
     Ok(out.write_table(&format!("series/{stem}.csv"), table)?)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::prepare::{Planned, Prepared};
+    use super::*;
+    use crate::record::Status;
+
+    #[test]
+    fn a_panic_is_an_error_for_every_record_of_the_case() {
+        let text = "claim = \"c\"\nseconds = 1\nstudy = \"basis\"\n[[check]]\nid = \"unity\"\n\
+                    quantity = \"partition of unity, largest error\"\n";
+        let case = Case::parse(Path::new("trial/case.toml"), text, &[]).unwrap();
+        let planned = |variant: &str| Planned { check: 0, variant: variant.to_string(), scene: None };
+        let records = ["p=1", "p=2", "p=3", "p=4"].map(planned).to_vec();
+        let prepared = Prepared { scenes: Vec::new(), records };
+        let supervisor = Supervisor {
+            threads: 1,
+            slow: LEAST_TIME,
+            limit: LEAST_TIME,
+            advanced: &|_| (),
+            is_slow: &|| (),
+            is_late: &|| (),
+        };
+        let ended = supervisor.run(|| -> () { panic!("planted") });
+        let Ended::Broken(message) = ended else { panic!("it ended well") };
+        let records = judge::broken(&case, &prepared, &message).records;
+        let ids: Vec<&str> = records.iter().map(|record| record.id.as_str()).collect();
+        assert_eq!(ids, ["p=1", "p=2", "p=3", "p=4"].map(|p| format!("trial/case/{p}/unity")));
+        for record in &records {
+            assert_eq!(record.status, Status::Error);
+            let message = record.message.as_deref().unwrap();
+            assert!(message.contains("planted") && message.contains("suite.rs"), "{message}");
+        }
+    }
+}

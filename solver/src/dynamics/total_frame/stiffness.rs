@@ -105,6 +105,23 @@ impl TotalFrame {
         out
     }
 
+    /// Change of the internal forces (N/m per m) along a motion u from the deformation with these gradients,
+    /// with the phase field at the points as it is now, less that of loads that follow.
+    fn forces_along(&self, from: &[[Lane; 4]], u: &VectorField, strips: &mut StripForces, out: &mut VectorField) {
+        let Self { lattice, moduli, kinematics, fracture, .. } = self;
+        if let Some(fracture) = fracture {
+            sweep_along(*kinematics, lattice, from, u, self.held_phase(fracture), strips);
+        } else {
+            let kernels = (0..lattice.strips()).map(|_| ElasticStress { moduli: *moduli, energy: Lane::ZERO });
+            sweep_along(*kinematics, lattice, from, u, kernels, strips);
+        }
+        strips.assemble(lattice.grid.stride, out);
+        lattice.fold(out);
+        for load in &self.loads {
+            load.add_change(-load.factor.at(self.time), u, out);
+        }
+    }
+
     /// Stress with the phase field at the points as it is now, per strip.
     fn held_phase<'a>(&self, fracture: &'a LatticeFracture) -> impl Iterator<Item = HeldPhaseStress<'a>> {
         let (moduli, model) = (self.moduli, fracture.model);
@@ -146,24 +163,6 @@ impl<'a> LatticeStiffness<'a> {
             *out = field[component][at];
         }
     }
-
-    /// Change of the internal forces along the motion at hand, with the phase field at the points as it is
-    /// now, less that of loads that follow.
-    fn forces_along(&mut self, image: &mut VectorField) {
-        let Self { frame, field, strips, gradients: Some(gradients), .. } = self else { return };
-        let TotalFrame { lattice, moduli, kinematics, fracture, .. } = frame;
-        if let Some(fracture) = fracture {
-            sweep_along(*kinematics, lattice, gradients, field, frame.held_phase(fracture), strips);
-        } else {
-            let kernels = (0..lattice.strips()).map(|_| ElasticStress { moduli: *moduli, energy: Lane::ZERO });
-            sweep_along(*kinematics, lattice, gradients, field, kernels, strips);
-        }
-        strips.assemble(lattice.grid.stride, image);
-        lattice.fold(image);
-        for load in &frame.loads {
-            load.add_change(-load.factor.at(frame.time), field, image);
-        }
-    }
 }
 
 impl StiffnessOperator for LatticeStiffness<'_> {
@@ -175,19 +174,18 @@ impl StiffnessOperator for LatticeStiffness<'_> {
     /// iteration (Gould, Hribar and Nocedal 2001).
     fn stiffness(&mut self, x: &[f64], out: &mut [f64]) {
         self.unpack(x);
-        let mut image = std::mem::take(&mut self.image);
-        match &self.gradients {
-            None => self.frame.elastic_forces(&self.field, &mut self.strips, &mut image),
-            Some(_) => self.forces_along(&mut image),
+        let Self { frame, field, image, strips, gradients, .. } = self;
+        match gradients {
+            None => frame.elastic_forces(field, strips, image),
+            Some(gradients) => frame.forces_along(gradients, field, strips, image),
         }
-        if let Some(boundary) = &self.frame.boundary {
-            boundary.add_springs(&self.field, &mut image);
+        if let Some(boundary) = &frame.boundary {
+            boundary.add_springs(field, image);
         }
-        if let Some(edges) = &self.frame.edges {
-            edges.multipliers.project_forces(&mut image);
+        if let Some(edges) = &frame.edges {
+            edges.multipliers.project_forces(image);
         }
-        self.pack(&image, out);
-        self.image = image;
+        self.pack(&self.image, out);
     }
 
     fn divide_by_mass(&mut self, x: &[f64], out: &mut [f64]) {

@@ -110,11 +110,11 @@ impl Watch {
             self.table.names.extend(own);
             self.table.columns.resize(self.table.names.len(), Vec::new());
         }
-        let is_broken = |phase: &&f64| **phase < BROKEN;
-        let part = |wall: &[f64]| wall.iter().filter(is_broken).count() as f64 / wall.len() as f64;
+        let is_broken = |phase: &f64| *phase < BROKEN;
+        let part = |wall: &[f64]| wall.iter().filter(|phase| is_broken(phase)).count() as f64 / wall.len() as f64;
         let [front, rear] = &seen.walls;
         let aside = if seen.broken > 0.0 { seen.aside / seen.broken } else { 0.0 };
-        let begun = [front, rear].map(|wall| yes(wall.first().is_some_and(|phase| *phase < BROKEN)));
+        let begun = [front, rear].map(|wall| yes(wall.first().is_some_and(is_broken)));
         let mut row = vec![part(front), part(rear), begun[0], begun[1], force, elastic, damage, aside];
         row.extend(sample.named_values().iter().map(|(_, value)| value));
         self.table.push(&row);
